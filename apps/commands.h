@@ -1,0 +1,43 @@
+// What every sub-command offers to main(), and what they share.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "behaviors/loader.h"
+#include "core/diagnostics.h"
+
+namespace CLI {
+class App;
+}
+
+namespace footfall::apps {
+
+inline constexpr int kGood = 0;
+inline constexpr int kRobotFailed = 1;   // the robot fell, or a test failed
+inline constexpr int kBadInput = 2;      // the input is wrong
+inline constexpr int kMachineFailed = 3; // the machine or the backend failed
+
+// Each adds its sub-command with a callback that sets `exit_code`.
+void add_run_command(CLI::App& app, int& exit_code);
+void add_check_command(CLI::App& app, int& exit_code);
+void add_trace_command(CLI::App& app, int& exit_code);
+void add_signals_command(CLI::App& app, int& exit_code);
+
+// Folders that hold robots/, behaviors/library/ and sim/worlds/: the working folder, those of
+// FOOTFALL_PATH (colons between), the source tree, the installed data.
+std::vector<std::string> search_path();
+
+// NAME itself if it is a file, else behaviors/library/NAME.yaml in the search path; NAME if nowhere.
+std::string find_behavior_file(const std::string& name);
+
+// Loads a behavior and prints every problem on stderr; nullptr if there were errors.
+std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path, const std::string& robot,
+                                                     const std::vector<std::string>& set);
+
+// Splits NAME=VALUE texts; a text without `=` is reported as an error.
+std::vector<std::pair<std::string, std::string>> split_settings(const std::vector<std::string>& set,
+                                                                core::Diagnostics& diagnostics);
+
+}  // namespace footfall::apps

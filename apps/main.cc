@@ -1,0 +1,32 @@
+// The `footfall` command: one small file a sub-command.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "apps/commands.h"
+#include "apps/report_command.h"
+#include "lab/version.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Footfall executes behaviors for legged robots.\n"
+               "Exit codes: 0 good, 1 the robot fell or a test failed, 2 the input is wrong, "
+               "3 the machine or the backend failed."};
+  app.name("footfall");
+  app.set_version_flag("--version", footfall::lab::kVersion);
+  app.require_subcommand(1);
+  int exit_code = 0;
+  footfall::apps::add_run_command(app, exit_code);
+  footfall::apps::add_check_command(app, exit_code);
+  footfall::apps::add_trace_command(app, exit_code);
+  footfall::apps::add_signals_command(app, exit_code);
+  footfall::apps::add_report_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : footfall::apps::kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "footfall: error: %s\n", error.what());
+    return footfall::apps::kMachineFailed;
+  }
+  return exit_code;
+}

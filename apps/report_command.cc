@@ -1,0 +1,99 @@
+// `footfall report`; see report_command.h.
+#include "apps/report_command.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "apps/report_film.h"
+#include "lab/log_reader.h"
+#include "lab/report.h"
+
+namespace footfall::apps {
+namespace {
+
+struct ReportArguments {
+  std::string log;
+  std::string out;    // default: report.html beside the log
+  std::string strip;  // a PNG besides the page
+  std::string film;   // an MP4
+  bool no_strip = false;
+  bool static_plots = false;
+};
+
+// A file beside the log; empty if it is not there.
+std::string text_beside(const std::filesystem::path& log, const char* name) {
+  std::ifstream file(log.parent_path() / name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// The folder of a log stands for the log in it.
+std::filesystem::path log_path(const std::string& argument) {
+  const std::filesystem::path path(argument);
+  return std::filesystem::is_directory(path) ? path / "log.mcap" : path;
+}
+
+int report(const ReportArguments& arguments) {
+  const std::filesystem::path path = log_path(arguments.log);
+  int exit_code = 0;
+  try {
+    const lab::Log log = lab::read_log(path.string());
+    lab::ReportOptions options;
+    options.summary_json = text_beside(path, "summary.json");
+    options.timing_json = text_beside(path, "timing.json");
+    options.static_plots = arguments.static_plots;
+    if (!arguments.no_strip) {
+      try {
+        const sim::Image strip = film_strip(log);
+        options.strip_png = sim::encode_png(strip);
+        if (!arguments.strip.empty()) sim::write_png(strip, arguments.strip);
+      } catch (const std::runtime_error& error) {
+        options.strip_note = error.what();
+        std::fprintf(stderr, "warning: the report has no film strip: %s\n", error.what());
+        if (!arguments.strip.empty()) exit_code = 3;
+      }
+    }
+    const std::string out =
+        arguments.out.empty() ? (path.parent_path() / "report.html").string() : arguments.out;
+    lab::write_report(log, out, options);
+    std::printf("%s\n", out.c_str());
+    if (!log.complete)
+      std::fprintf(stderr, "warning: the log was cut off; the report ends there\n");
+    if (!arguments.film.empty()) {
+      try {
+        write_film(log, arguments.film);
+        std::printf("%s\n", arguments.film.c_str());
+      } catch (const std::runtime_error& error) {
+        std::fprintf(stderr, "error: %s\n", error.what());
+        exit_code = 3;
+      }
+    }
+  } catch (const std::runtime_error& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command =
+      app.add_subcommand("report", "One self-contained HTML page from the log of a run");
+  command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
+  command->add_option("-o,--output", arguments->out,
+                      "the page (default: report.html beside the log)");
+  command->add_option("--strip", arguments->strip, "write the film strip as PNG, too");
+  command->add_option("--film", arguments->film, "write the run as MP4 (needs ffmpeg)");
+  command->add_flag("--no-strip", arguments->no_strip, "a page without pictures of the robot");
+  command->add_flag("--static", arguments->static_plots, "plots as SVG, without script");
+  command->footer("Example: footfall report out/demo -o report.html --strip strip.png");
+  command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
+}
+
+}  // namespace footfall::apps

@@ -1,0 +1,50 @@
+// CLI11 declarations of `footfall run`; see run_options.h.
+#include "apps/run_options.h"
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+
+#include "core/units.h"
+
+namespace footfall::apps {
+
+void add_run_options(CLI::App& command, RunOptions& o) {
+  command.add_option("BEHAVIOR", o.behavior, "Behavior file, or the name of one in behaviors/library")->required();
+  command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's own");
+  command.add_option("--backend", o.backend, "mujoco (physics) or stub (double integrators)")
+      ->check(CLI::IsMember({"mujoco", "stub"}))
+      ->capture_default_str();
+  command.add_option("--world", o.world, "World file, or the name of one in sim/worlds")->capture_default_str();
+  command.add_option("--for", o.duration_text, "How long at most, e.g. 20s (default 20 s; no bound with --steps)");
+  command.add_option("--steps", o.steps, "Ends after this many steps")->check(CLI::PositiveNumber);
+  command.add_option("--seed", o.seed, "Seed of everything random in the world")->capture_default_str();
+  command.add_option("--set", o.set, "NAME=VALUE: a parameter, gain or planner value, e.g. lift_time=160ms");
+  command.add_option("--push", o.pushes,
+                     "FORCE_N,DURATION_S,DIRECTION_DEG,AT with AT a time or `step N phase P`; direction in the "
+                     "heading frame, 0 forward, 90 left");
+  command.add_option("--goal", o.goal, "x,y in m: where it is told to be");
+  command.add_option("--goal-velocity", o.goal_velocity, "vx,vy in m/s: the goal moves from the start on");
+  command.add_option("--log", o.log, "Folder for log.mcap, summary.json, timing.json")->capture_default_str();
+  command.add_flag("--no-log", o.no_log, "Writes no files");
+  command.add_flag("--log-all", o.log_all, "Logs every tick");
+  command.add_option("--log-every", o.log_every, "Logs every N-th tick")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_flag("--realtime", o.realtime, "Paced by the wall clock");
+  command.add_flag("--json", o.json, "One JSON object as the last line on stdout");
+  command.add_flag("--quiet", o.quiet, "No status line, no summary");
+  command.footer("Example: footfall run balance --for 20s --push \"40,0.1,90,step 16 phase 0.5\"");
+}
+
+void finish_options(RunOptions& o) {
+  if (o.duration_text.empty()) {
+    if (o.steps > 0) o.duration = 0.0;
+    return;
+  }
+  const auto quantity = core::parse_quantity(o.duration_text);
+  const bool time = quantity && (quantity->bare || quantity->dimension == core::kTime);
+  if (!time || !(quantity->value > 0.0)) {
+    throw std::runtime_error("--for: error: expected a time such as 20s, got '" + o.duration_text + "'");
+  }
+  o.duration = quantity->value;
+}
+
+}  // namespace footfall::apps

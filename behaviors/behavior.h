@@ -1,0 +1,75 @@
+// A compiled behavior: immutable flat arrays, built at load, indexed by small integers.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "behaviors/chart.h"
+#include "behaviors/control_spec.h"
+#include "behaviors/foot_planner.h"
+#include "behaviors/parameter.h"
+#include "behaviors/signals.h"
+#include "core/fault.h"
+#include "core/signal_table.h"
+#include "core/units.h"
+#include "model/robot_description.h"
+#include "tasks/active_set.h"
+
+namespace footfall::behaviors {
+
+// Identity of a task across states: same name, type and point keep reference and integral.
+struct TaskInstance {
+  std::string name;
+  tasks::TaskType type = tasks::TaskType::com_position;
+  int point = -1;   // index into the model's points (contacts first, then points of the robot file)
+  int signals = 0;  // index into SignalLayout::task: tasks of one name share their signals
+};
+
+struct PlannerInfo {
+  std::string name;
+  FootPlannerSpec spec;
+  int goal_slot = -1;  // parameter slot of the goal's x (y follows); -1: constant
+  std::vector<double> goal;  // constant goal
+  int done_event = -1, late_event = -1, failed_event = -1;
+};
+
+// The statechart's arrays (Chart) and, with a robot, what it controls.
+struct Behavior : Chart {
+  std::string name;  // of the file, without folder and extension
+  std::string path;
+  bool has_robot = false;  // false: a pure statechart
+  model::RobotDescription robot;
+
+  core::SignalTable signals;  // prototype: names, units, zeros; a run copies it
+  SignalLayout layout;
+
+  std::vector<ParameterInfo> parameters;  // gains too
+  std::vector<double> values;             // initial values, by slot
+
+  std::vector<ControlSpec> controls;  // by Statechart::control()
+  std::vector<TaskSpec> tasks;
+  std::vector<AxisSpec> axes;
+  std::vector<InternalSpec> internals;
+  std::vector<TransitionSpec> contact_transitions;
+  std::vector<TorqueLoopTable> torque_loops;
+  std::vector<std::string> stacks;  // names, as written
+
+  std::vector<TaskInstance> task_instances;
+  std::vector<std::string> internal_instances;
+  std::vector<TaskName> task_names;  // index: TaskInstance::signals
+  std::vector<PlannerInfo> planners;
+  std::vector<InvokeInfo> invokes;
+
+  int step = -1;  // index of the mark `step`, -1: it marks none
+  std::vector<int> touchdown_events, liftoff_events;  // by contact
+  std::vector<int> fault_events;                      // by core::Fault
+  std::vector<int> changed_events;                    // by parameter, parameter.changed.NAME
+  bool watches_parameters = false;                    // some transition listens to those
+
+  int find_event(std::string_view event) const;
+  int find_state(std::string_view path) const;  // by full dotted path
+  int find_parameter(std::string_view parameter) const;
+};
+
+}  // namespace footfall::behaviors

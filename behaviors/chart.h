@@ -1,0 +1,121 @@
+// A statechart as flat arrays, built at load and immutable in the tick. States are numbered in
+// document order (a state, then its children): a smaller index is earlier in the document, and the
+// descendants of `s` are exactly the indices s+1 .. states[s].end-1.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "behaviors/expression.h"
+#include "core/diagnostics.h"
+
+namespace footfall::behaviors {
+
+// A stretch of another flat array.
+struct Range {
+  int first = 0;
+  int count = 0;
+  int end() const { return first + count; }
+};
+
+enum class StateKind : std::uint8_t {
+  atomic, compound, parallel, final, history_shallow, history_deep,
+};
+
+// When a parallel state raises its `done.state` (region: index of a state in StateInfo).
+enum class DoneRule : std::uint8_t { all, any, region };
+
+struct StateInfo {
+  std::string name;
+  std::string path;  // dotted, from below the root; the root's is its own name
+  std::string doc;
+  core::Mark mark;
+  int parent = -1;
+  int end = 0;    // one past its last descendant
+  int depth = 0;  // of the root 0
+  StateKind kind = StateKind::atomic;
+  Range initial;      // into Chart::targets: compound: its default entry; history: its default
+  Range transitions;  // into Chart::transitions, in document order
+  Range on_entry;     // into Chart::actions
+  Range on_exit;
+  Range invokes;            // into Behavior::invokes
+  int done_event = -1;      // id of done.state.PATH
+  DoneRule done = DoneRule::all;
+  int done_region = -1;
+  int history = -1;         // slot of a history state
+  int control_weight = 0;   // the sum over active states is the index into Behavior::controls
+};
+
+struct TransitionInfo {
+  core::Mark mark;
+  int source = 0;
+  Range targets;            // into Chart::targets; none: actions only, no exit, no entry
+  bool has_event = false;   // false: event-less
+  int guard = -1;           // expression, -1: none
+  int after = -1;           // expression of a time, -1: none
+  bool internal = false;
+  int domain = -1;          // precomputed; -1: no targets, or a history target (then at run time)
+  Range actions;
+  std::string reason;
+};
+
+enum class ActionKind : std::uint8_t { raise, set, log, mark };
+
+struct ActionInfo {
+  ActionKind kind = ActionKind::raise;
+  int index = 0;        // event, parameter's slot, text or mark
+  int expression = -1;  // of `set`
+  double min = 0.0;     // of `set`: range, equal: none
+  double max = 0.0;
+};
+
+// `log: TEXT`: literal pieces around the values of expressions.
+struct LogText {
+  std::vector<std::string> pieces;  // one more than expressions
+  std::vector<int> expressions;
+};
+
+inline constexpr int kMaxLogValues = 8;
+
+struct Chart {
+  std::int64_t rate_mhz = 1'000'000;  // ticks per second, in millihertz
+  int micro_steps = 64;               // bound in one tick
+  ExpressionPool expressions;
+  std::vector<StateInfo> states;  // [0] is the root
+  std::vector<TransitionInfo> transitions;
+  std::vector<int> targets;
+  std::vector<ActionInfo> actions;
+  std::vector<LogText> logs;
+  std::vector<std::string> marks;
+  std::vector<std::string> events;
+  // Which events enable which transition: bit e of row t; event_words 64-bit words a row.
+  std::vector<std::uint64_t> event_match;
+  int event_words = 0;
+  int safe_transition = -1;     // to the root's `safe` state, -1: none
+  int history_count = 0;
+  int error_execution = -1;     // event id
+  int event_overflow = -1;      // event id
+
+  double period() const { return 1e3 / static_cast<double>(rate_mhz); }
+  bool is_descendant(int state, int ancestor) const {
+    return state > ancestor && state < states[static_cast<std::size_t>(ancestor)].end;
+  }
+  bool matches(int transition, int event) const {
+    const auto word = static_cast<std::size_t>(transition * event_words + event / 64);
+    return (event_match[word] >> (static_cast<unsigned>(event) % 64U) & 1U) != 0;
+  }
+  // The innermost compound state, or the root, that properly contains `source` and all targets.
+  // Source: W3C SCXML 1.0, Appendix D, getTransitionDomain and findLCCA.
+  int domain_of(const TransitionInfo& transition, const int* first_target, int count) const;
+  // Whether `event` is `pattern`, lies below it (`fault.*`: `fault` and all below), or it is `*`.
+  static bool event_matches(std::string_view pattern, std::string_view event);
+};
+
+// Number of whole periods that `seconds` lasts: ceil(D * rate) with D rounded to nanoseconds, in
+// whole numbers, so that 16 ms at 1500 Hz is 24 always. -1 if D is negative, not finite or above
+// 10^6 s.
+std::int64_t periods_of(double seconds, std::int64_t rate_mhz) noexcept;
+
+}  // namespace footfall::behaviors

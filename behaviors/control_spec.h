@@ -1,0 +1,90 @@
+// What a configuration of the statechart controls: compiled tasks, references and contacts as flat
+// arrays, one ControlSpec for each combination of states that differ in control.
+#pragma once
+
+#include <vector>
+
+#include "behaviors/chart.h"
+#include "behaviors/trajectory.h"
+#include "tasks/active_set.h"
+
+namespace footfall::behaviors {
+
+// One axis of a task. Gains are slots of the parameter array, -1 for 0; the rest are expressions.
+struct AxisSpec {
+  int axis = 0;
+  int kp = -1, ki = -1, kd = -1;
+  int value = -1;         // reference kind `value`: position; trajectories: `to`, -1: stays
+  int end_velocity = -1;  // trajectories, -1: 0
+};
+
+// Where a task's reference comes from. `owner` is the state whose entry starts a trajectory.
+struct ReferenceSpec {
+  enum class Kind : std::uint8_t { none, value, trajectory };
+  Kind kind = Kind::none;
+  Shape shape = Shape::hold;
+  int owner = 0;
+  int over = -1;          // expression of a time
+  bool retarget = false;  // follows a changing `to`
+};
+
+struct TaskSpec {
+  int instance = 0;  // into Behavior::task_instances
+  tasks::TaskType type = tasks::TaskType::com_position;
+  int point = -1;
+  tasks::Frame frame = tasks::Frame::world;
+  int priority = 1;
+  int weight = -1;              // expressions, -1: the default of TaskCommand
+  int acceleration_limit = -1;
+  int integral_limit = -1;
+  Range axes;  // into Behavior::axes
+  ReferenceSpec reference;
+};
+
+struct InternalSpec {
+  int instance = 0;  // into Behavior::internal_instances
+  int contact_a = 0, contact_b = 0;
+  int reference = -1;  // expression, N at each contact
+  int feedback = -1;   // expression, -1: 0
+  double scale = 1.0;  // of the reference: 0.5 for the `sum` convention
+};
+
+// A torque-continuous change of the contact set.
+struct TransitionSpec {
+  int owner = 0;           // state that declares it
+  bool loads = false;      // else releases
+  int over = -1;           // expression of a time
+  int toward = -1;         // index into Behavior::controls
+  tasks::TransitionForm form = tasks::TransitionForm::continuous;
+  std::vector<int> contacts;  // that move
+};
+
+struct ControlSpec {
+  std::vector<int> contacts;
+  Range tasks;      // into Behavior::tasks, by priority, then in document order
+  Range internals;  // into Behavior::internals
+  int transition = -1;                 // into Behavior::contact_transitions
+  std::vector<int> torque_loops;       // by joint: index into Behavior::torque_loops, -1: as it is
+};
+
+// Gains of the actuators' own torque loop, by joint; NaN where the table says nothing.
+struct TorqueLoopTable {
+  std::string name;
+  std::vector<double> p, i, d;
+};
+
+// One `invoke` of a planner.
+struct InvokeInfo {
+  int state = 0;
+  int planner = 0;
+  int at = -1;               // expression of a time in the state; -1: at_fraction of `after`
+  double at_fraction = 0.0;  // with after >= 0
+  int after = -1;            // expression of the state's own duration
+  int every = -1;            // expression of a time; -1: asked once
+  int deadline = -1;         // expression of a time; -1: none
+  bool closed_form = false;  // what a late plan is replaced by, else the last one stays
+  int stance = -1, swing = -1;  // contact indices
+  int switch_in = -1;           // expression of a time
+};
+
+}  // namespace footfall::behaviors

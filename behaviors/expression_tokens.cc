@@ -1,0 +1,125 @@
+// Numbers take the longest unit that follows them: `6 cm`, `0.25 m/s`, `220 1/s^2`.
+#include "behaviors/expression_tokens.h"
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+namespace footfall::behaviors {
+namespace {
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n'; }
+bool is_unit_byte(char c) {
+  return is_letter(c) || is_digit(c) || c == ' ' || c == '*' || c == '/' || c == '^' || c == '%' ||
+         c == '-' || static_cast<unsigned char>(c) >= 0x80;
+}
+
+// Bytes of the longest unit at the start of `rest`, 0 if none; never cuts a word in two.
+std::size_t unit_length(std::string_view rest, core::Quantity& unit) {
+  if (rest.empty()) return 0;
+  const char first = rest.front();
+  if (!is_letter(first) && first != '%' && first != '1' &&
+      static_cast<unsigned char>(first) < 0x80) {
+    return 0;
+  }
+  std::size_t run = 0;
+  while (run < rest.size() && run < 40 && is_unit_byte(rest[run])) ++run;
+  for (std::size_t n = run; n > 0; --n) {
+    const char last = rest[n - 1];
+    if (last == ' ' || last == '*' || last == '/' || last == '^' || last == '-') continue;
+    if (n < rest.size() && (is_letter(rest[n]) || is_digit(rest[n]) || rest[n] == '.')) continue;
+    if (n < rest.size() && rest[n] == '(' && is_letter(last)) continue;  // a function's name
+    if (n == 1 && first == '1') continue;
+    if (const auto parsed = core::parse_unit(rest.substr(0, n))) {
+      unit = *parsed;
+      return n;
+    }
+  }
+  return 0;
+}
+
+// Reads a number with its unit at `at`; moves `at` behind it.
+bool read_number(std::string_view text, std::size_t& at, Token& token, ExpressionError& error) {
+  const char* begin = text.data() + at;
+  double value = 0.0;
+  const auto result = std::from_chars(begin, text.data() + text.size(), value);
+  token.kind = Token::Kind::number;
+  if (result.ec != std::errc() || !std::isfinite(value)) {
+    error = {static_cast<int>(at), "bad-number", "number out of range"};
+    return false;
+  }
+  at += static_cast<std::size_t>(result.ptr - begin);
+  std::size_t after = at;
+  while (after < text.size() && is_space(text[after])) ++after;
+  core::Quantity unit;
+  const std::size_t length = unit_length(text.substr(after), unit);
+  token.quantity = {value, core::kNone, true};
+  if (length > 0) {
+    token.quantity = {value * unit.value, unit.dimension, false};
+    at = after + length;
+  }
+  return true;
+}
+
+void read_name(std::string_view text, std::size_t& at, std::string& name) {
+  while (at < text.size()) {
+    if (is_letter(text[at]) || is_digit(text[at])) {
+      name += text[at++];
+    } else if (text[at] == '.' && at + 1 < text.size() &&
+               (is_letter(text[at + 1]) || is_digit(text[at + 1]))) {
+      name += text[at++];
+    } else {
+      break;
+    }
+  }
+}
+
+bool read_symbol(std::string_view text, std::size_t& at, Token& token) {
+  token.kind = Token::Kind::symbol;
+  for (const std::string_view two : {"<=", ">=", "==", "!="}) {
+    if (text.substr(at, 2) == two) {
+      token.text = two;
+      at += 2;
+      return true;
+    }
+  }
+  if (std::string_view("+-*/^<>()?:,").find(text[at]) == std::string_view::npos) return false;
+  token.text = text[at++];
+  return true;
+}
+
+}  // namespace
+
+std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionError& error) {
+  std::vector<Token> tokens;
+  std::size_t at = 0;
+  while (true) {
+    while (at < text.size() && is_space(text[at])) ++at;
+    Token token;
+    token.offset = static_cast<int>(at);
+    if (at >= text.size()) {
+      tokens.push_back(token);
+      return tokens;
+    }
+    const char c = text[at];
+    if (is_digit(c) || (c == '.' && at + 1 < text.size() && is_digit(text[at + 1]))) {
+      if (!read_number(text, at, token, error)) return std::nullopt;
+    } else if (is_letter(c)) {
+      token.kind = Token::Kind::name;
+      read_name(text, at, token.text);
+    } else if (c == '$' && at + 1 < text.size() && is_letter(text[at + 1])) {
+      token.kind = Token::Kind::parameter;
+      ++at;
+      read_name(text, at, token.text);
+    } else if (!read_symbol(text, at, token)) {
+      error = {token.offset, "bad-character",
+               std::string("unexpected '") + c + "' in an expression"};
+      return std::nullopt;
+    }
+    tokens.push_back(std::move(token));
+  }
+}
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,167 @@
+// Values and names in a behavior file, compiled where they stand; see load_context.h.
+#include "behaviors/load_context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "behaviors/substitution.h"
+
+namespace footfall::behaviors {
+
+void LoadContext::error(core::Mark mark, std::string_view id, std::string text) {
+  diagnostics.error(mark, id, std::move(text));
+}
+
+void LoadContext::warning(core::Mark mark, std::string_view id, std::string text) {
+  diagnostics.warning(mark, id, std::move(text));
+}
+
+int LoadContext::compile(const core::YamlNode& node, std::string_view text, std::size_t offset,
+                         std::optional<core::Dimension> expected, const ValueScope& scope) {
+  const MarkedText marked = read_marked(text);
+  ExpressionScope names;
+  names.signals = &behavior.signals;
+  names.parameters = &behavior.parameters;
+  names.state = scope.state;
+  names.entry_axes = scope.entry_axes;
+  names.entry_axis = scope.entry_axis;
+  names.entry_dimension = scope.entry_dimension;
+  names.find_state = [this, &scope](std::string_view name, std::string& why) {
+    return find_target(std::max(0, scope.state), name, why);
+  };
+  ExpressionError problem;
+  const int index =
+      compile_expression(marked.text, names, expected, behavior.expressions, problem);
+  if (index >= 0) return index;
+  core::Mark mark = node.mark;
+  mark.column += static_cast<int>(offset) + (node.quoted ? 1 : 0) + marked.column(problem.offset);
+  error(mark, problem.id, problem.text);
+  return -1;
+}
+
+int LoadContext::compile_value(const core::YamlNode& node, core::Dimension expected,
+                               const ValueScope& scope) {
+  if (!node.is_scalar() || node.scalar.empty()) {
+    core::report_expected(node, core::dimension_name(expected), diagnostics);
+    return -1;
+  }
+  if (core::is_expression(node)) {
+    return compile(node, std::string_view(node.scalar).substr(1), 1, expected, scope);
+  }
+  const char first = node.scalar.front();
+  const bool name = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');
+  const bool plain = node.scalar.find_first_of(" +-*/^()?:,<>=") == std::string::npos;
+  if (first == '$' || (name && plain)) return compile(node, node.scalar, 0, expected, scope);
+  const auto value = core::read_quantity(node, expected, diagnostics);
+  return value ? behavior.expressions.add_constant(*value, expected) : -1;
+}
+
+int LoadContext::compile_condition(const core::YamlNode& node, const ValueScope& scope) {
+  if (!node.is_scalar() || node.scalar.empty()) {
+    core::report_expected(node, "a condition", diagnostics);
+    return -1;
+  }
+  const std::size_t skip = core::is_expression(node) ? 1 : 0;
+  return compile(node, std::string_view(node.scalar).substr(skip), skip, core::kNone, scope);
+}
+
+std::optional<double> LoadContext::constant_value(int expression) const {
+  if (expression < 0 || !behavior.expressions[expression].constant) return std::nullopt;
+  return evaluate(behavior.expressions, expression, {});
+}
+
+int LoadContext::compile_time(const core::YamlNode& node, const ValueScope& scope) {
+  const int expression = compile_value(node, core::kTime, scope);
+  const auto value = constant_value(expression);
+  if (value && periods_of(*value, behavior.rate_mhz) < 0) {
+    error(node.mark, "out-of-range", "expected a time from 0 s to 10^6 s, got " +
+                                         core::describe(node));
+    return -1;
+  }
+  return expression;
+}
+
+// Sought in the state and below, then in its parent and below, and outwards; the shallowest wins.
+int LoadContext::find_target(int from, std::string_view name, std::string& why) const {
+  const auto& states = behavior.states;
+  if (name == states[0].path) return 0;
+  for (int scope = from; scope >= 0; scope = states[static_cast<std::size_t>(scope)].parent) {
+    int best = -1, other = -1;
+    for (int s = std::max(scope, 1); s < states[static_cast<std::size_t>(scope)].end; ++s) {
+      const StateInfo& info = states[static_cast<std::size_t>(s)];
+      const bool fits = info.path == name ||
+                        (info.path.ends_with(name) && info.path.size() > name.size() &&
+                         info.path[info.path.size() - name.size() - 1] == '.');
+      if (!fits) continue;
+      if (best >= 0 && info.depth > states[static_cast<std::size_t>(best)].depth) continue;
+      other = best >= 0 && info.depth == states[static_cast<std::size_t>(best)].depth ? best : -1;
+      best = s;
+    }
+    if (other >= 0) {
+      why = fmt::format("state '{}' is ambiguous: '{}' or '{}'", name,
+                        states[static_cast<std::size_t>(other)].path,
+                        states[static_cast<std::size_t>(best)].path);
+      return -1;
+    }
+    if (best >= 0) return best;
+  }
+  std::vector<std::string> names;
+  for (const StateInfo& info : states) names.push_back(info.name);
+  why = fmt::format("unknown state '{}'{}", name, core::did_you_mean(name, names));
+  return -1;
+}
+
+int LoadContext::require_target(int from, const core::YamlNode& node) {
+  if (!node.is_scalar() || node.scalar.empty()) {
+    core::report_expected(node, "the name of a state", diagnostics);
+    return -1;
+  }
+  std::string why;
+  const int target = find_target(from, node.scalar, why);
+  if (target < 0) error(node.mark, "unknown-state", why);
+  return target;
+}
+
+int LoadContext::add_event(std::string_view name) {
+  const int found = behavior.find_event(name);
+  if (found >= 0) return found;
+  behavior.events.emplace_back(name);
+  return static_cast<int>(behavior.events.size()) - 1;
+}
+
+std::vector<std::string> LoadContext::parameter_names() const {
+  std::vector<std::string> names;
+  for (const ParameterInfo& parameter : behavior.parameters) {
+    if (!parameter.gain) names.push_back(parameter.name);
+  }
+  return names;
+}
+
+std::vector<std::string> LoadContext::contact_names() const {
+  std::vector<std::string> names;
+  for (const auto& contact : behavior.robot.contacts) names.push_back(contact.name);
+  return names;
+}
+
+std::vector<std::string> LoadContext::joint_names() const {
+  std::vector<std::string> names;
+  for (const auto& joint : behavior.robot.joints) names.push_back(joint.name);
+  return names;
+}
+
+int LoadContext::require_contact(const core::YamlNode& node) {
+  if (!node.is_scalar() || node.scalar.empty()) {
+    core::report_expected(node, "the name of a contact", diagnostics);
+    return -1;
+  }
+  const int contact = behavior.robot.find_contact(node.scalar);
+  if (contact < 0) {
+    error(node.mark, "unknown-contact",
+          fmt::format("unknown contact '{}'{}", node.scalar,
+                      core::did_you_mean(node.scalar, contact_names())));
+  }
+  return contact;
+}
+
+}  // namespace footfall::behaviors

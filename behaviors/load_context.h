@@ -1,0 +1,141 @@
+// What the loader's parts share while a behavior is being compiled. Load time only.
+//
+// Order: overrides (--set) into the YAML, robot, parameters, templates expanded into a tree of states,
+// names of states, planners, signals, then everything that holds expressions: transitions, actions,
+// invokes, control.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "behaviors/behavior.h"
+#include "behaviors/loader.h"
+#include "core/diagnostics.h"
+#include "core/value_reader.h"
+#include "core/yaml.h"
+
+namespace footfall::behaviors {
+
+// Arguments of a template, in the order of its `args`.
+using Arguments = std::vector<std::pair<std::string, core::YamlNode>>;
+
+// A state after the expansion of templates; its keys hold no arguments any more.
+struct StateSource {
+  std::string name;
+  core::Mark mark;
+  core::YamlNode keys;   // a map, without `states`, `use`, `mirror` and `with`
+  Arguments arguments;   // in force where it is written; a stack's `$names` are looked up here
+  std::vector<StateSource> children;
+  int index = -1;        // into Behavior::states
+};
+
+// One named gain table entry, or the gains written in a task: slots are made at first use.
+struct GainEntry {
+  const core::YamlNode* node = nullptr;
+  std::string name;                       // `gains.single.swing`
+  std::array<int, 3> slots{-1, -1, -1};   // kp, ki, kd
+  std::array<int, 3> sizes{0, 0, 0};
+  std::vector<std::string> axes;          // of the first task that used it
+  bool made = false;
+};
+
+// What names mean inside an expression or value.
+struct ValueScope {
+  int state = -1;                                        // the state it is written in
+  const std::vector<std::string>* entry_axes = nullptr;  // in a task's reference
+  int entry_axis = -1;
+  core::Dimension entry_dimension;
+};
+
+// One event or pattern that enables a transition, matched once all events are known.
+struct EventPattern {
+  int transition = 0;
+  std::string text;
+  core::Mark mark;
+};
+
+struct LoadContext {
+  LoadContext(Behavior& out, const LoadOptions& given, core::Diagnostics& problems)
+      : behavior(out), options(given), diagnostics(problems) {}
+
+  Behavior& behavior;
+  const LoadOptions& options;
+  core::Diagnostics& diagnostics;
+  core::YamlNode root;          // the file, overrides applied
+  StateSource machine;          // expanded
+  std::vector<const StateSource*> sources;          // by state index
+  std::map<std::string, GainEntry> gain_entries;    // by name; node addresses stay
+  std::array<std::optional<std::array<double, 2>>, 3> gain_ranges;  // kp, ki, kd
+  std::deque<core::YamlNode> substituted;           // stacks with arguments put in; addresses stay
+  std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
+  std::vector<std::string> used_templates, used_stacks;
+  std::vector<std::string> raised_events, declared_events;
+  std::vector<EventPattern> patterns;
+  int built_in_events = 0;  // events before this index are raised by the engine or from outside
+  std::vector<std::string_view> task_type_of_name;  // by Behavior::task_names
+  int expanded_states = 0;
+
+  void error(core::Mark mark, std::string_view id, std::string text);
+  void warning(core::Mark mark, std::string_view id, std::string text);
+  // The value under a key of a map in the file's root, nullptr if there is none.
+  const core::YamlNode* section(std::string_view key) const { return root.find(key); }
+
+  // Expression text as an index into the pool, -1 and an error at the exact column otherwise.
+  int compile(const core::YamlNode& node, std::string_view text, std::size_t offset,
+              std::optional<core::Dimension> expected, const ValueScope& scope);
+  // A scalar value: a quantity, `$parameter`, `= expression`, or a lone signal name.
+  int compile_value(const core::YamlNode& node, core::Dimension expected, const ValueScope& scope);
+  // A `when:`, where the `=` is implied.
+  int compile_condition(const core::YamlNode& node, const ValueScope& scope);
+  // The value if the expression is constant.
+  std::optional<double> constant_value(int expression) const;
+  // A time that must not be negative where it is constant.
+  int compile_time(const core::YamlNode& node, const ValueScope& scope);
+
+  // A state by any suffix of its path, as rule 8 says; -1 and a reason otherwise.
+  int find_target(int from, std::string_view name, std::string& why) const;
+  // The same with an error at the node.
+  int require_target(int from, const core::YamlNode& node);
+  int add_event(std::string_view name);
+  std::vector<std::string> parameter_names() const;
+  std::vector<std::string> contact_names() const;
+  std::vector<std::string> joint_names() const;
+  // Index of a contact of the robot, -1 and an error otherwise.
+  int require_contact(const core::YamlNode& node);
+};
+
+// Arguments put into a tree: whole scalars, keys, parts of dotted names and of expressions.
+core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments);
+
+// The loader's steps, in their order.
+void apply_overrides(LoadContext& context);      // load_overrides.cc
+void load_parameters(LoadContext& context);      // load_parameters.cc
+void expand_machine(LoadContext& context);       // load_template.cc
+void load_states(LoadContext& context);          // load_machine.cc
+void load_events(LoadContext& context);          // load_events.cc
+void load_planners(LoadContext& context);        // load_planners.cc
+void load_signals(LoadContext& context);         // load_signals.cc
+void load_gains(LoadContext& context);           // load_gains.cc
+void load_torque_loops(LoadContext& context);    // load_torque_loop.cc
+void load_transitions(LoadContext& context);     // load_transitions.cc
+void load_invokes(LoadContext& context);         // load_invokes.cc
+void load_control(LoadContext& context);         // load_control.cc
+void finish_events(LoadContext& context);        // load_events.cc
+
+// Events of a transition's `on` (load_events.cc).
+void load_patterns(LoadContext& context, int state, const core::YamlNode& on,
+                   std::vector<EventPattern>& out, int transition);
+// Actions of a list (on_entry, on_exit, do) appended to the chart (load_actions.cc).
+Range load_actions(LoadContext& context, const core::YamlNode& node, int state);
+// Targets of a transition, `initial` or `default` (load_machine.cc).
+Range load_targets(LoadContext& context, int from, const core::YamlNode& node);
+// Errors for every `$name` left in a name or key that is no parameter (load_template.cc).
+void check_resolved(LoadContext& context, const core::YamlNode& node);
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,343 @@
+// One ControlSpec for each combination of active states that differ in control, numbered so that the
+// sum of the active states' weights is its index: the tick finds it without a search.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "behaviors/load_gains.h"
+#include "behaviors/load_tasks.h"
+
+namespace footfall::behaviors {
+namespace {
+
+constexpr int kMaxConfigurations = 20000;
+constexpr std::array<const char*, 7> kControlKeys = {
+    "stack", "tasks", "internal", "contacts", "gains", "torque_loop", "contact_transition"};
+
+bool has_control_keys(const core::YamlNode& keys) {
+  return std::any_of(kControlKeys.begin(), kControlKeys.end(),
+                     [&](const char* key) { return keys.find(key) != nullptr; });
+}
+
+class ControlLoader {
+ public:
+  explicit ControlLoader(LoadContext& context) : context_(context), behavior_(context.behavior) {}
+
+  void load() {
+    const std::size_t count = behavior_.states.size();
+    counts_.assign(count, 1);
+    controls_.assign(count, false);
+    for (std::size_t s = count; s-- > 0;) count_configurations(static_cast<int>(s));
+    if (counts_[0] > kMaxConfigurations) {
+      context_.error(context_.machine.mark, "too-many",
+                     fmt::format("more than {} combinations of parallel states that control",
+                                 kMaxConfigurations));
+      return;
+    }
+    weigh(0, 1);
+    behavior_.controls.resize(static_cast<std::size_t>(counts_[0]));
+    std::vector<int> active;
+    for (int id = 0; id < counts_[0]; ++id) {
+      active.clear();
+      collect(0, id, active);
+      std::sort(active.begin(), active.end());
+      const Draft draft = build_draft(context_, active, nullptr, -1);
+      ControlSpec control = compile(draft);
+      if (draft.transition != nullptr) {
+        control.transition = compile_transition(draft, active);
+        check_moving(control);
+      }
+      behavior_.controls[static_cast<std::size_t>(id)] = std::move(control);
+    }
+    warn_unused();
+    make_unused_gains(context_);
+  }
+
+ private:
+  const StateInfo& state(int s) const { return behavior_.states[static_cast<std::size_t>(s)]; }
+  int& count_of(int s) { return counts_[static_cast<std::size_t>(s)]; }
+
+  // Combinations below a state: 1 where nothing below it controls.
+  void count_configurations(int s) {
+    bool below = false;
+    std::int64_t count = state(s).kind == StateKind::parallel ? 1 : 0;
+    for (int c = s + 1; c < state(s).end; c = state(c).end) {
+      if (state(c).history >= 0) continue;
+      below = below || controls_[static_cast<std::size_t>(c)];
+      count = state(s).kind == StateKind::parallel ? count * count_of(c) : count + count_of(c);
+      count = std::min<std::int64_t>(count, kMaxConfigurations + 1);
+    }
+    if (below) count_of(s) = static_cast<int>(count);
+    controls_[static_cast<std::size_t>(s)] =
+        below || has_control_keys(context_.sources[static_cast<std::size_t>(s)]->keys);
+  }
+
+  bool collapsed(int s) const {
+    bool below = false;
+    for (int c = s + 1; c < state(s).end; c = state(c).end) {
+      below = below || controls_[static_cast<std::size_t>(c)];
+    }
+    return !below;
+  }
+
+  void weigh(int s, int unit) {
+    if (collapsed(s)) return;
+    int offset = 0;
+    for (int c = s + 1; c < state(s).end; c = state(c).end) {
+      if (state(c).history >= 0) continue;
+      if (state(s).kind == StateKind::parallel) {
+        weigh(c, unit);
+        unit *= count_of(c);
+      } else {
+        behavior_.states[static_cast<std::size_t>(c)].control_weight = offset * unit;
+        weigh(c, unit);
+        offset += count_of(c);
+      }
+    }
+  }
+
+  // The states of combination `id` below s, as far as they control.
+  void collect(int s, int id, std::vector<int>& active) const {
+    active.push_back(s);
+    if (collapsed(s)) return;
+    for (int c = s + 1; c < state(s).end; c = state(c).end) {
+      if (state(c).history >= 0) continue;
+      const int count = counts_[static_cast<std::size_t>(c)];
+      if (state(s).kind == StateKind::parallel) {
+        collect(c, id % count, active);
+        id /= count;
+      } else if (id < count) {
+        collect(c, id, active);
+        return;
+      } else {
+        id -= count;
+      }
+    }
+  }
+
+  ControlSpec compile(const Draft& draft) {
+    ControlSpec control;
+    compile_contacts(draft, control);
+    compile_tasks(draft, control);
+    control.internals.first = static_cast<int>(behavior_.internals.size());
+    for (const DraftItem& item : draft.internals) {
+      if (const auto spec = compile_internal(context_, item)) behavior_.internals.push_back(*spec);
+    }
+    control.internals.count =
+        static_cast<int>(behavior_.internals.size()) - control.internals.first;
+    compile_torque_loops(draft, control);
+    return control;
+  }
+
+  void compile_contacts(const Draft& draft, ControlSpec& control) {
+    if (draft.contacts == nullptr ||
+        !core::expect_sequence(*draft.contacts, "a list of contacts", context_.diagnostics)) {
+      return;
+    }
+    for (const core::YamlNode& item : draft.contacts->items) {
+      const int contact = context_.require_contact(item);
+      if (contact < 0) continue;
+      if (std::find(control.contacts.begin(), control.contacts.end(), contact) !=
+          control.contacts.end()) {
+        context_.error(item.mark, "duplicate", fmt::format("contact '{}' twice", item.scalar));
+        continue;
+      }
+      control.contacts.push_back(contact);
+    }
+  }
+
+  void compile_tasks(const Draft& draft, ControlSpec& control) {
+    std::vector<TaskSpec> specs;
+    int axes = 0;
+    for (const DraftItem& item : draft.tasks) {
+      const std::optional<TaskSpec> spec = cached_task(item, draft);
+      if (!spec) continue;
+      specs.push_back(*spec);
+      axes += spec->axes.count;
+    }
+    if (static_cast<int>(specs.size()) > core::kMaxTasks || axes > core::kMaxAxes) {
+      context_.error(draft.tasks.front().mark, "too-many",
+                     fmt::format("{} tasks with {} axes at once; at most {} and {}", specs.size(),
+                                 axes, core::kMaxTasks, core::kMaxAxes));
+      return;
+    }
+    std::stable_sort(specs.begin(), specs.end(), [](const TaskSpec& a, const TaskSpec& b) {
+      return a.priority < b.priority;
+    });
+    control.tasks = {static_cast<int>(behavior_.tasks.size()), static_cast<int>(specs.size())};
+    behavior_.tasks.insert(behavior_.tasks.end(), specs.begin(), specs.end());
+  }
+
+  // The same words in the same states are compiled once.
+  std::optional<TaskSpec> cached_task(const DraftItem& item, const Draft& draft) {
+    std::vector<std::pair<const void*, int>> identity;
+    for (const DraftKey& key : item.keys) identity.emplace_back(key.node, key.owner);
+    for (const DraftGains& gains : draft.gains) identity.emplace_back(gains.node, gains.owner);
+    const auto found = task_cache_.find(identity);
+    if (found != task_cache_.end()) return found->second;
+    return task_cache_[identity] = compile_task(context_, item, draft);
+  }
+
+  void compile_torque_loops(const Draft& draft, ControlSpec& control) {
+    const auto& robot = behavior_.robot;
+    if (draft.torque_loops.empty()) return;
+    control.torque_loops.assign(robot.joints.size(), -1);
+    for (const DraftItem& item : draft.torque_loops) {
+      const core::YamlNode& name = *item.keys.front().node;
+      const int table = find_torque_loop(name);
+      const int contact = robot.find_contact(item.name);
+      const int group = robot.find_group(
+          contact >= 0 ? robot.contacts[static_cast<std::size_t>(contact)].group : item.name);
+      if (group < 0) {
+        std::vector<std::string> names = context_.contact_names();
+        for (const auto& other : robot.groups) names.push_back(other.name);
+        context_.error(item.mark, "unknown-group",
+                       fmt::format("'{}' is neither a foot with a leg nor a joint group{}",
+                                   item.name, core::did_you_mean(item.name, names)));
+        continue;
+      }
+      for (const int joint : robot.groups[static_cast<std::size_t>(group)].joints) {
+        control.torque_loops[static_cast<std::size_t>(joint)] = table;
+      }
+    }
+  }
+
+  int find_torque_loop(const core::YamlNode& name) {
+    std::vector<std::string> names;
+    for (const TorqueLoopTable& table : behavior_.torque_loops) {
+      if (table.name == name.scalar) return static_cast<int>(names.size());
+      names.push_back(table.name);
+    }
+    context_.error(name.mark, "unknown-torque-loop",
+                   fmt::format("unknown torque_loop table '{}'{}", name.scalar,
+                               core::did_you_mean(name.scalar, names)));
+    return -1;
+  }
+
+  int compile_transition(const Draft& draft, const std::vector<int>& active) {
+    const core::YamlNode& node = *draft.transition;
+    if (!core::expect_map(node, "a map with releases or loads", context_.diagnostics)) return -1;
+    core::check_keys(node, {"releases", "loads", "over", "toward", "form", "doc"},
+                     context_.diagnostics);
+    const core::YamlNode* releases = node.find("releases");
+    const core::YamlNode* loads = node.find("loads");
+    if ((releases == nullptr) == (loads == nullptr)) {
+      context_.error(node.mark, "missing-key", "expected either `releases` or `loads`");
+      return -1;
+    }
+    TransitionSpec spec;
+    spec.owner = draft.transition_owner;
+    spec.loads = loads != nullptr;
+    read_moving(spec.loads ? *loads : *releases, spec);
+    if (const auto* over = core::require_key(node, "over", context_.diagnostics)) {
+      ValueScope scope;
+      scope.state = spec.owner;
+      spec.over = context_.compile_time(*over, scope);
+    }
+    if (const auto* form = node.find("form")) {
+      const auto choice =
+          core::read_choice(*form, {"continuous", "frozen"}, context_.diagnostics);
+      if (choice && *choice == 1) spec.form = tasks::TransitionForm::frozen;
+    }
+    compile_toward(node, active, spec);
+    behavior_.contact_transitions.push_back(std::move(spec));
+    return static_cast<int>(behavior_.contact_transitions.size()) - 1;
+  }
+
+  void read_moving(const core::YamlNode& feet, TransitionSpec& spec) {
+    std::vector<const core::YamlNode*> items;
+    for (const core::YamlNode& item : feet.items) items.push_back(&item);
+    if (!feet.is_sequence()) items.push_back(&feet);
+    for (const core::YamlNode* item : items) {
+      const int contact = context_.require_contact(*item);
+      if (contact >= 0) spec.contacts.push_back(contact);
+    }
+  }
+
+  // The stack to come, with what the states around say over it.
+  void compile_toward(const core::YamlNode& node, const std::vector<int>& active,
+                      TransitionSpec& spec) {
+    const core::YamlNode* toward = node.find("toward");
+    if (!spec.loads) {
+      if (toward != nullptr) {
+        context_.error(toward->mark, "misplaced-key", "`toward` goes with `loads`");
+      }
+      return;
+    }
+    if (toward == nullptr) {
+      context_.error(node.mark, "missing-key", "`loads` needs `toward`: the stack to come");
+      return;
+    }
+    std::vector<int> around;
+    for (const int s : active) {
+      if (behavior_.is_descendant(spec.owner, s)) around.push_back(s);
+    }
+    ControlSpec control = compile(build_draft(context_, around, toward, spec.owner));
+    for (const int contact : spec.contacts) {
+      if (std::find(control.contacts.begin(), control.contacts.end(), contact) !=
+          control.contacts.end()) {
+        continue;
+      }
+      context_.error(toward->mark, "bad-toward",
+                     fmt::format("stack '{}' does not have '{}' in contact", toward->scalar,
+                                 behavior_.robot.contacts[static_cast<std::size_t>(contact)].name));
+    }
+    spec.toward = static_cast<int>(behavior_.controls.size());
+    behavior_.controls.push_back(std::move(control));
+  }
+
+  // A foot that is being released, or is still to be loaded, may not hold.
+  void check_moving(const ControlSpec& control) {
+    if (control.transition < 0) return;
+    const TransitionSpec& spec =
+        behavior_.contact_transitions[static_cast<std::size_t>(control.transition)];
+    for (const int contact : spec.contacts) {
+      if (std::find(control.contacts.begin(), control.contacts.end(), contact) ==
+          control.contacts.end()) {
+        continue;
+      }
+      context_.error(state(spec.owner).mark, "bad-transition",
+                     fmt::format("'{}' is {} here, but the state's contacts hold it",
+                                 behavior_.robot.contacts[static_cast<std::size_t>(contact)].name,
+                                 spec.loads ? "loaded" : "released"));
+    }
+  }
+
+  void warn_unused() {
+    const core::YamlNode* stacks = context_.section("stacks");
+    if (stacks == nullptr) return;
+    for (const core::YamlEntry& entry : stacks->entries) {
+      behavior_.stacks.push_back(entry.key);
+      const auto& used = context_.used_stacks;
+      if (std::find(used.begin(), used.end(), entry.key) != used.end()) continue;
+      context_.warning(entry.key_mark, "unused",
+                       fmt::format("stack '{}' is never used, and not checked", entry.key));
+    }
+  }
+
+  LoadContext& context_;
+  Behavior& behavior_;
+  std::vector<int> counts_;      // combinations, by state
+  std::vector<bool> controls_;   // by state: it or something below it controls
+  std::map<std::vector<std::pair<const void*, int>>, std::optional<TaskSpec>> task_cache_;
+};
+
+}  // namespace
+
+void load_control(LoadContext& context) {
+  if (context.behavior.has_robot) {
+    ControlLoader(context).load();
+    return;
+  }
+  for (const StateSource* source : context.sources) {
+    for (const char* key : kControlKeys) {
+      if (const auto* node = source->keys.find(key)) {
+        context.error(node->mark, "needs-robot",
+                      fmt::format("`{}` needs a robot: this behavior names none", key));
+      }
+    }
+  }
+}
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,185 @@
+// Merging of stacks and overlays; see load_draft.h.
+#include "behaviors/load_draft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace footfall::behaviors {
+namespace {
+
+const core::YamlNode& keys_of(const LoadContext& context, int state) {
+  return context.sources[static_cast<std::size_t>(state)]->keys;
+}
+
+// Two states of different regions: neither contains the other.
+bool parallel(const LoadContext& context, int a, int b) {
+  return a != b && !context.behavior.is_descendant(a, b) && !context.behavior.is_descendant(b, a);
+}
+
+void report_clash(LoadContext& context, core::Mark mark, const std::string& what, int a, int b) {
+  const auto& states = context.behavior.states;
+  context.error(mark, "parallel-conflict",
+                fmt::format("{} is given by '{}' and by '{}' at once", what,
+                            states[static_cast<std::size_t>(a)].path,
+                            states[static_cast<std::size_t>(b)].path));
+}
+
+// Lays the entries of a map by name over the items; `stack` is not empty for the stack's own.
+void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::YamlNode& map,
+              int owner, const std::string& stack, const char* what) {
+  if (!core::expect_map(map, fmt::format("{}s by name", what), context.diagnostics)) return;
+  for (const core::YamlEntry& entry : map.entries) {
+    auto item = std::find_if(items.begin(), items.end(),
+                             [&](const DraftItem& other) { return other.name == entry.key; });
+    if (item != items.end() && stack.empty() && parallel(context, item->owner, owner)) {
+      report_clash(context, entry.key_mark, fmt::format("{} '{}'", what, entry.key), item->owner,
+                   owner);
+    }
+    if (core::is_off(entry.value)) {
+      if (item == items.end()) {
+        std::vector<std::string> names;
+        for (const DraftItem& other : items) names.push_back(other.name);
+        context.error(entry.key_mark, "unknown-task",
+                      fmt::format("there is no {} '{}' to switch off{}", what, entry.key,
+                                  core::did_you_mean(entry.key, names)));
+      } else {
+        items.erase(item);
+      }
+      continue;
+    }
+    if (!core::expect_map(entry.value, fmt::format("the keys of a {}", what), context.diagnostics)) {
+      continue;
+    }
+    if (item == items.end()) {
+      items.push_back({entry.key, entry.key_mark, owner, {}, {}});
+      item = items.end() - 1;
+    }
+    item->owner = owner;
+    for (const core::YamlEntry& key : entry.value.entries) {
+      const auto same = [&](const DraftKey& other) { return other.key == key.key; };
+      auto found = std::find_if(item->keys.begin(), item->keys.end(), same);
+      if (found == item->keys.end()) found = item->keys.insert(found, DraftKey{key.key, nullptr, 0});
+      found->node = &key.value;
+      found->owner = owner;
+      if (key.key == "gains") {
+        item->gains_owner =
+            stack.empty() ? context.behavior.states[static_cast<std::size_t>(owner)].path : stack;
+      }
+    }
+  }
+}
+
+void lay_torque_loops(Draft& draft, const core::YamlNode& map, int owner) {
+  for (const core::YamlEntry& entry : map.entries) {
+    auto item = std::find_if(draft.torque_loops.begin(), draft.torque_loops.end(),
+                             [&](const DraftItem& other) { return other.name == entry.key; });
+    if (item == draft.torque_loops.end()) {
+      draft.torque_loops.push_back({entry.key, entry.key_mark, owner, {}, {}});
+      item = draft.torque_loops.end() - 1;
+    }
+    item->keys = {{"table", &entry.value, owner}};
+  }
+}
+
+// What a stack and a state have in common.
+void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, int owner,
+              const std::string& stack) {
+  if (const auto* contacts = keys.find("contacts")) {
+    if (draft.contacts != nullptr && stack.empty() &&
+        parallel(context, draft.contacts_owner, owner)) {
+      report_clash(context, contacts->mark, "`contacts`", draft.contacts_owner, owner);
+    }
+    draft.contacts = contacts;
+    draft.contacts_owner = owner;
+  }
+  if (const auto* tasks = keys.find("tasks")) {
+    lay_over(context, draft.tasks, *tasks, owner, stack, "task");
+  }
+  if (const auto* internal = keys.find("internal")) {
+    lay_over(context, draft.internals, *internal, owner, stack, "internal force");
+  }
+  if (const auto* gains = keys.find("gains")) draft.gains.push_back({gains, owner});
+  if (const auto* loops = keys.find("torque_loop")) {
+    if (core::expect_map(*loops, "tables by foot or group", context.diagnostics)) {
+      lay_torque_loops(draft, *loops, owner);
+    }
+  }
+}
+
+// The innermost of the active states that names a stack, -1 if none does.
+int stack_state(LoadContext& context, const std::vector<int>& active) {
+  int best = -1;
+  for (const int s : active) {
+    const core::YamlNode* stack = keys_of(context, s).find("stack");
+    if (stack == nullptr) continue;
+    if (best >= 0 && parallel(context, best, s)) {
+      report_clash(context, stack->mark, "`stack`", best, s);
+    }
+    best = s;
+  }
+  return best;
+}
+
+}  // namespace
+
+const DraftKey* DraftItem::find(std::string_view key) const {
+  for (const DraftKey& candidate : keys) {
+    if (candidate.key == key) return &candidate;
+  }
+  return nullptr;
+}
+
+const core::YamlNode* find_stack(LoadContext& context, const core::YamlNode& name, int state) {
+  const auto cached = context.stack_cache.find({name.scalar, state});
+  if (cached != context.stack_cache.end()) return cached->second;
+  const core::YamlNode* stacks = context.section("stacks");
+  const core::YamlNode* stack =
+      stacks == nullptr || !name.is_scalar() ? nullptr : stacks->find(name.scalar);
+  if (stack == nullptr) {
+    std::vector<std::string> names;
+    if (stacks != nullptr) {
+      for (const auto& entry : stacks->entries) names.push_back(entry.key);
+    }
+    context.error(name.mark, "unknown-stack",
+                  fmt::format("unknown stack '{}'{}", name.scalar,
+                              core::did_you_mean(name.scalar, names)));
+    return context.stack_cache[{name.scalar, state}] = nullptr;
+  }
+  if (!core::expect_map(*stack, "a stack", context.diagnostics)) return nullptr;
+  context.used_stacks.push_back(name.scalar);
+  context.substituted.push_back(
+      substitute(*stack, context.sources[static_cast<std::size_t>(state)]->arguments));
+  const core::YamlNode& own = context.substituted.back();
+  core::check_keys(own, {"contacts", "tasks", "internal", "torque_loop", "gains", "doc"},
+                   context.diagnostics);
+  check_resolved(context, own);
+  return context.stack_cache[{name.scalar, state}] = &own;
+}
+
+Draft build_draft(LoadContext& context, const std::vector<int>& active,
+                  const core::YamlNode* toward, int toward_state) {
+  Draft draft;
+  const int owner = toward != nullptr ? toward_state : stack_state(context, active);
+  if (owner >= 0) {
+    const core::YamlNode& name =
+        toward != nullptr ? *toward : *keys_of(context, owner).find("stack");
+    if (const core::YamlNode* stack = find_stack(context, name, owner)) {
+      lay_keys(context, draft, *stack, owner, name.scalar);
+      for (DraftItem& item : draft.tasks) item.owner = 0;  // no state's word yet
+      for (DraftItem& item : draft.internals) item.owner = 0;
+      draft.contacts_owner = 0;
+    }
+  }
+  for (const int s : active) {
+    const core::YamlNode& keys = keys_of(context, s);
+    lay_keys(context, draft, keys, s, "");
+    if (const auto* transition = keys.find("contact_transition"); transition && toward == nullptr) {
+      draft.transition = transition;
+      draft.transition_owner = s;
+    }
+  }
+  return draft;
+}
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,141 @@
+// The table of events, and which of them enable which transition.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "behaviors/load_context.h"
+
+namespace footfall::behaviors {
+namespace {
+
+void add_built_in(LoadContext& context) {
+  Behavior& behavior = context.behavior;
+  behavior.error_execution = context.add_event("error.execution");
+  for (int f = 0; f < core::kFaultCount; ++f) {
+    const auto name = core::fault_name(static_cast<core::Fault>(f));
+    behavior.fault_events.push_back(context.add_event(fmt::format("fault.{}", name)));
+  }
+  behavior.event_overflow =
+      behavior.fault_events[static_cast<std::size_t>(core::Fault::event_overflow)];
+  for (const auto& contact : behavior.robot.contacts) {
+    behavior.touchdown_events.push_back(
+        context.add_event(fmt::format("contact.{}.touchdown", contact.name)));
+    behavior.liftoff_events.push_back(
+        context.add_event(fmt::format("contact.{}.liftoff", contact.name)));
+  }
+  for (const ParameterInfo& parameter : behavior.parameters) {
+    behavior.changed_events.push_back(context.add_event("parameter.changed." + parameter.name));
+  }
+  for (StateInfo& state : behavior.states) {
+    if (state.kind != StateKind::compound && state.kind != StateKind::parallel) continue;
+    state.done_event = context.add_event("done.state." + state.path);
+  }
+}
+
+std::vector<const core::YamlNode*> patterns_of(const core::YamlNode& on) {
+  std::vector<const core::YamlNode*> patterns;
+  if (on.is_sequence()) {
+    for (const core::YamlNode& item : on.items) patterns.push_back(&item);
+  } else {
+    patterns.push_back(&on);
+  }
+  return patterns;
+}
+
+constexpr std::string_view kDone = "done.state.";
+constexpr std::string_view kChanged = "parameter.changed.";
+
+// One event name or pattern of a transition's `on`; done.state.NAME is resolved like a target.
+std::string resolve_pattern(LoadContext& context, int state, const core::YamlNode& node) {
+  if (!node.is_scalar() || node.scalar.empty()) {
+    core::report_expected(node, "the name of an event", context.diagnostics);
+    return {};
+  }
+  const std::string& text = node.scalar;
+  if (!text.starts_with(kDone) || text.ends_with("*")) {
+    if (!text.ends_with("*")) context.add_event(text);
+    return text;
+  }
+  std::string why;
+  const int target =
+      context.find_target(state, std::string_view(text).substr(kDone.size()), why);
+  if (target < 0) {
+    core::Mark mark = node.mark;
+    mark.column += static_cast<int>(kDone.size()) + (node.quoted ? 1 : 0);
+    context.error(mark, "unknown-state", why);
+    return {};
+  }
+  const StateInfo& info = context.behavior.states[static_cast<std::size_t>(target)];
+  if (info.done_event < 0) {
+    context.error(node.mark, "never-raised",
+                  fmt::format("'{}' has no states: it is never done", info.path));
+    return {};
+  }
+  return context.behavior.events[static_cast<std::size_t>(info.done_event)];
+}
+
+}  // namespace
+
+void load_events(LoadContext& context) {
+  if (const core::YamlNode* events = context.section("events")) {
+    if (core::expect_map(*events, "events by name", context.diagnostics)) {
+      for (const core::YamlEntry& entry : events->entries) {
+        context.declared_events.push_back(entry.key);
+        context.add_event(entry.key);
+      }
+    }
+  }
+  add_built_in(context);
+  context.built_in_events = static_cast<int>(context.behavior.events.size());
+}
+
+void load_patterns(LoadContext& context, int state, const core::YamlNode& on,
+                   std::vector<EventPattern>& out, int transition) {
+  for (const core::YamlNode* node : patterns_of(on)) {
+    const std::string text = resolve_pattern(context, state, *node);
+    if (!text.empty()) out.push_back({transition, text, node->mark});
+  }
+}
+
+void finish_events(LoadContext& context) {
+  Behavior& behavior = context.behavior;
+  const auto& raised = context.raised_events;
+  const auto& declared = context.declared_events;
+  const auto contains = [](const auto& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (std::size_t p = behavior.changed_events.size(); p < behavior.parameters.size(); ++p) {
+    behavior.changed_events.push_back(  // gains: known only now
+        context.add_event("parameter.changed." + behavior.parameters[p].name));
+  }
+  const int count = static_cast<int>(behavior.events.size());
+  behavior.event_words = (count + 63) / 64;
+  behavior.event_match.assign(
+      behavior.transitions.size() * static_cast<std::size_t>(behavior.event_words), 0);
+  for (const EventPattern& pattern : context.patterns) {
+    const bool exact = !pattern.text.ends_with("*");
+    const bool changed = pattern.text.starts_with(kChanged) &&
+                         behavior.find_parameter(pattern.text.substr(kChanged.size())) >= 0;
+    const bool external = changed || context.built_in_events > behavior.find_event(pattern.text) ||
+                          contains(declared, pattern.text) || contains(raised, pattern.text);
+    if (exact && !external) {
+      std::vector<std::string> known = declared;
+      known.insert(known.end(), raised.begin(), raised.end());
+      known.insert(known.end(), behavior.events.begin(),
+                   behavior.events.begin() + context.built_in_events);
+      context.warning(pattern.mark, "never-raised",
+                      fmt::format("nothing raises '{}', and `events` does not list it{}",
+                                  pattern.text, core::did_you_mean(pattern.text, known)));
+    }
+    for (int e = 0; e < count; ++e) {
+      const std::string& event = behavior.events[static_cast<std::size_t>(e)];
+      if (!Chart::event_matches(pattern.text, event)) continue;
+      if (event.starts_with("parameter.changed.")) behavior.watches_parameters = true;
+      const int word = pattern.transition * behavior.event_words + e / 64;
+      behavior.event_match[static_cast<std::size_t>(word)] |= std::uint64_t{1}
+                                                              << (static_cast<unsigned>(e) % 64U);
+    }
+  }
+}
+
+}  // namespace footfall::behaviors

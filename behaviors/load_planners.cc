@@ -1,0 +1,140 @@
+// `planners:`, type velocity_reversal.
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "behaviors/load_context.h"
+
+namespace footfall::behaviors {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const std::vector<std::string> kAxes = {"x", "y"};
+
+void read_pair(LoadContext& context, const core::YamlNode& map, const char* key,
+               core::Dimension dimension, std::array<double, 2>& out) {
+  const core::YamlNode* node = map.find(key);
+  if (node == nullptr) return;
+  const auto values = core::read_vector(*node, dimension, kAxes, context.diagnostics);
+  if (values) out = {(*values)[0], (*values)[1]};
+}
+
+void read_limit(LoadContext& context, const core::YamlNode& map, const char* key,
+                core::Dimension dimension, double& out) {
+  const core::YamlNode* node = map.find(key);
+  if (node == nullptr) return;
+  out = core::read_bounded(*node, dimension, 0.0, kInfinity, context.diagnostics).value_or(0.0);
+}
+
+void read_goal(LoadContext& context, const core::YamlNode& map, PlannerInfo& planner) {
+  planner.goal = {0.0, 0.0};
+  const core::YamlNode* node = map.find("goal");
+  if (node == nullptr) return;
+  if (!core::is_reference(*node)) {
+    const auto values = core::read_vector(*node, core::kLength, kAxes, context.diagnostics);
+    if (values) planner.goal = *values;
+    return;
+  }
+  const std::string name = node->scalar.substr(1);
+  const int index = context.behavior.find_parameter(name);
+  if (index < 0) {
+    context.error(node->mark, "unknown-parameter",
+                  fmt::format("unknown parameter '${}'{}", name,
+                              core::did_you_mean(name, context.parameter_names())));
+    return;
+  }
+  const ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
+  if (info.size != 2) {
+    context.error(node->mark, "bad-size",
+                  fmt::format("a goal has 2 values, '{}' has {}", name, info.size));
+  } else if (!info.bare && !(info.dimension == core::kLength)) {
+    context.error(node->mark, "dimension",
+                  fmt::format("expected a length, got {}", core::dimension_name(info.dimension)));
+  } else {
+    planner.goal_slot = info.slot;
+  }
+}
+
+void read_reach(LoadContext& context, const core::YamlNode& map, FootPlannerSpec& spec) {
+  const core::YamlNode* reach = map.find("reach");
+  if (reach == nullptr || !core::expect_map(*reach, "a map with x and y", context.diagnostics)) {
+    return;
+  }
+  core::check_keys(*reach, {"x", "y"}, context.diagnostics);
+  read_limit(context, *reach, "x", core::kLength, spec.reach_x);
+  const core::YamlNode* y = reach->find("y");
+  if (y == nullptr) return;
+  if (const auto range = core::read_range(*y, core::kLength, context.diagnostics)) {
+    spec.min_width = (*range)[0];
+    spec.max_width = (*range)[1];
+    if (spec.min_width < 0.0) {
+      context.error(y->mark, "out-of-range", "a step width cannot be negative");
+    }
+  }
+}
+
+void read_extension(LoadContext& context, const core::YamlNode& map, FootPlannerSpec& spec) {
+  const core::YamlNode* extension = map.find("extension");
+  if (extension == nullptr || core::is_off(*extension)) return;
+  if (!core::expect_map(*extension, "a map with speed and limit", context.diagnostics)) return;
+  core::check_keys(*extension, {"speed", "limit"}, context.diagnostics);
+  read_limit(context, *extension, "speed", core::kVelocity, spec.extension_speed);
+  read_limit(context, *extension, "limit", core::kTime, spec.extension_limit);
+}
+
+void load_planner(LoadContext& context, const core::YamlEntry& entry) {
+  if (!core::check_name(entry, context.diagnostics, "the name of a planner")) return;
+  const core::YamlNode& map = entry.value;
+  if (!core::expect_map(map, "a planner", context.diagnostics)) return;
+  const core::YamlNode* type = core::require_key(map, "type", context.diagnostics);
+  if (type == nullptr ||
+      !core::read_choice(*type, {"velocity_reversal"}, context.diagnostics, "a type of planner")) {
+    return;
+  }
+  core::check_keys(map, {"type", "kappa", "reversal", "goal", "width_offset", "goal_error_limit",
+                         "reach", "extension", "velocity_filter", "doc"},
+                   context.diagnostics);
+  PlannerInfo planner;
+  planner.name = entry.key;
+  FootPlannerSpec& spec = planner.spec;
+  read_pair(context, map, "kappa", core::kNone, spec.kappa);
+  read_pair(context, map, "reversal", core::kTime, spec.reversal);
+  for (const double time : spec.reversal) {
+    if (time > 0.0) continue;
+    context.error(map.find("reversal")->mark, "out-of-range",
+                  "the time to velocity reversal must be above 0 s");
+    break;
+  }
+  core::read_quantity(map, "width_offset", core::kLength, spec.width_offset, context.diagnostics);
+  read_limit(context, map, "goal_error_limit", core::kLength, spec.goal_error_limit);
+  read_limit(context, map, "velocity_filter", core::kTime, spec.velocity_filter);
+  read_reach(context, map, spec);
+  read_extension(context, map, spec);
+  read_goal(context, map, planner);
+  for (const char* what : {"done", "late", "failed"}) {
+    const int event = context.add_event(fmt::format("planner.{}.{}", planner.name, what));
+    (what[0] == 'd' ? planner.done_event
+     : what[0] == 'l' ? planner.late_event : planner.failed_event) = event;
+  }
+  context.behavior.planners.push_back(std::move(planner));
+}
+
+}  // namespace
+
+void load_planners(LoadContext& context) {
+  const core::YamlNode* section = context.section("planners");
+  if (section == nullptr || !core::expect_map(*section, "planners by name", context.diagnostics)) {
+    return;
+  }
+  if (!context.behavior.has_robot && !section->entries.empty()) {
+    context.error(section->mark, "needs-robot", "planners need a robot: this behavior names none");
+    return;
+  }
+  for (const core::YamlEntry& entry : section->entries) load_planner(context, entry);
+  if (context.behavior.planners.size() > static_cast<std::size_t>(core::kMaxPlanners)) {
+    context.error(section->mark, "too-many",
+                  fmt::format("at most {} planners", core::kMaxPlanners));
+  }
+}
+
+}  // namespace footfall::behaviors

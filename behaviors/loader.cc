@@ -1,0 +1,99 @@
+// The steps from a behavior file to a compiled Behavior, in order; see loader.h.
+#include "behaviors/loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "behaviors/load_context.h"
+
+namespace footfall::behaviors {
+namespace {
+
+void load_robot(LoadContext& context, const std::string& path) {
+  const core::YamlNode* node = context.section("robot");
+  std::string name = context.options.robot;
+  if (name.empty() && node == nullptr) return;
+  if (name.empty()) {
+    const auto text = core::read_text(*node, context.diagnostics, "the name of a robot");
+    if (!text) return;
+    name = *text;
+  }
+  context.behavior.has_robot = true;
+  std::vector<std::string> search = context.options.search;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const std::string beside = folder.empty() ? name : folder + "/" + name;
+  std::string file = model::find_robot_file(name, search);
+  if (file.empty() && std::filesystem::is_regular_file(beside)) file = beside;
+  if (file.empty()) {
+    context.error(node == nullptr ? core::Mark{} : node->mark, "unknown-robot",
+                  fmt::format("unknown robot '{}': no such file, and no robots/{}/robot.yaml in {}",
+                              name, name, fmt::join(search, ", ")));
+    return;
+  }
+  context.behavior.robot = model::load_robot(file, context.diagnostics);
+  context.behavior.rate_mhz = context.behavior.robot.rate_mhz;
+}
+
+// Whether later steps make sense: the tree of states stands, and the robot is known.
+bool load_structure(LoadContext& context, const std::string& path) {
+  if (!core::check_kind(context.root, "behavior", 1, context.diagnostics)) return false;
+  core::check_keys(context.root,
+                   {"behavior", "name", "doc", "robot", "parameters", "events", "gains",
+                    "torque_loop", "planners", "stacks", "templates", "machine"},
+                   context.diagnostics);
+  apply_overrides(context);
+  const int before = context.diagnostics.error_count();
+  load_robot(context, path);
+  if (context.diagnostics.error_count() != before) return false;
+  load_parameters(context);
+  expand_machine(context);
+  if (context.section("machine") == nullptr) return false;
+  const int expanded = context.diagnostics.error_count();
+  load_states(context);
+  return context.diagnostics.error_count() == expanded;
+}
+
+void load_contents(LoadContext& context) {
+  load_planners(context);
+  load_events(context);
+  load_signals(context);
+  load_gains(context);
+  load_torque_loops(context);
+  load_transitions(context);
+  load_invokes(context);
+  load_control(context);
+  finish_events(context);
+}
+
+std::unique_ptr<Behavior> load(core::YamlNode root, const std::string& path,
+                               const LoadOptions& options, core::Diagnostics& diagnostics) {
+  auto behavior = std::make_unique<Behavior>();
+  behavior->path = path;
+  behavior->name = std::filesystem::path(path).stem().string();
+  if (root.is_null() && diagnostics.has_errors()) return nullptr;
+  const int before = diagnostics.error_count();
+  LoadContext context(*behavior, options, diagnostics);
+  context.root = std::move(root);
+  if (const auto* name = context.section("name"); name != nullptr && name->is_scalar()) {
+    behavior->name = name->scalar;
+  }
+  if (load_structure(context, path)) load_contents(context);
+  return diagnostics.error_count() == before ? std::move(behavior) : nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<Behavior> load_behavior(const std::string& path, const LoadOptions& options,
+                                        core::Diagnostics& diagnostics) {
+  return load(core::load_yaml_with_base(path, diagnostics), path, options, diagnostics);
+}
+
+std::unique_ptr<Behavior> load_behavior_text(std::string_view text, const std::string& name,
+                                             const LoadOptions& options,
+                                             core::Diagnostics& diagnostics) {
+  return load(core::load_yaml_text_with_base(text, name, diagnostics), name, options, diagnostics);
+}
+
+}  // namespace footfall::behaviors

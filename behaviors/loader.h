@@ -1,0 +1,29 @@
+// From a behavior file to a compiled Behavior: the one entry point of the language.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "behaviors/behavior.h"
+#include "core/diagnostics.h"
+
+namespace footfall::behaviors {
+
+struct LoadOptions {
+  std::vector<std::string> search;  // folders holding robots/NAME/robot.yaml
+  std::string robot;                // overrides the file's `robot:` if not empty
+  std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, texts as in YAML
+};
+
+// Loads, checks and compiles; nullptr if there were errors. Warnings do not prevent it.
+std::unique_ptr<Behavior> load_behavior(const std::string& path, const LoadOptions& options,
+                                        core::Diagnostics& diagnostics);
+// The same from text (tests); `name` stands for the file.
+std::unique_ptr<Behavior> load_behavior_text(std::string_view text, const std::string& name,
+                                             const LoadOptions& options,
+                                             core::Diagnostics& diagnostics);
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,26 @@
+// A parameter or gain of a behavior: one or more neighbouring values in the machine's flat array.
+#pragma once
+
+#include <string>
+
+#include "core/units.h"
+
+namespace footfall::behaviors {
+
+// A parameter or gain in the flat array Machine::parameters().
+struct ParameterInfo {
+  std::string name;  // `goal`, `gains.single.swing.kp`
+  int slot = 0;      // first value
+  int size = 1;
+  core::Dimension dimension;
+  double min = 0.0, max = 0.0;  // equal: no range
+  bool live = false;
+  std::string doc;
+  bool bare = false;      // no unit was written anywhere: adopts the dimension that is needed
+  bool variable = false;  // an action sets it: back at its value in every run, never live
+  bool gain = false;      // an entry of a gain table
+
+  bool has_range() const { return min < max; }
+};
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,23 @@
+// Template arguments put into text. Inside an expression a substituted part is framed by two control
+// bytes, so that an error behind it is still reported at its column in the file.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace footfall::behaviors {
+
+inline constexpr char kMarkBegin = '\x01';  // then one byte: length of the text that was replaced
+inline constexpr char kMarkEnd = '\x02';
+
+// An expression without its frames.
+struct MarkedText {
+  std::string text;
+  std::vector<int> columns;  // by byte of `text`: its offset in the file's text
+  int column(int offset) const;
+};
+
+MarkedText read_marked(std::string_view text);
+
+}  // namespace footfall::behaviors

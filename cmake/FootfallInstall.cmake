@@ -1,0 +1,19 @@
+# `cmake --install` and an exported package: find_package(footfall) gives footfall::engine and the rest.
+include(CMakePackageConfigHelpers)
+get_property(libraries GLOBAL PROPERTY FOOTFALL_LIBRARIES)
+install(TARGETS ${libraries} EXPORT footfallTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS footfall RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+foreach(folder core hal model tasks behaviors engine sim lab)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/footfall
+    FILES_MATCHING PATTERN "*.h" PATTERN "library" EXCLUDE PATTERN "worlds" EXCLUDE PATTERN "web" EXCLUDE)
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/behaviors/library DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/behaviors)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/worlds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/sim)
+install(EXPORT footfallTargets NAMESPACE footfall:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/footfallConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/footfallConfig.cmake INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/footfallConfig.cmake ${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FootfallDependencies.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)

@@ -1,0 +1,116 @@
+// Load-time problems, collected and printed like a compiler's; see diagnostics.h.
+#include "core/diagnostics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace footfall::core {
+
+namespace {
+
+// One problem is one line: a control character from a hostile file must not break it up.
+std::string on_one_line(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      out += fmt::format("\\x{:02x}", byte);
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+// Edit distance that counts a swap of neighbours as one edit (optimal string alignment).
+int edit_distance(std::string_view a, std::string_view b) {
+  const std::size_t columns = b.size() + 1;
+  std::vector<int> before_last(columns), last(columns), row(columns);
+  std::iota(last.begin(), last.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const int replace = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({replace, last[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        row[j] = std::min(row[j], before_last[j - 2] + 1);
+      }
+    }
+    std::swap(before_last, last);
+    std::swap(last, row);
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+int Diagnostics::add_file(const std::string& path) {
+  const auto found = std::find(files_.begin(), files_.end(), path);
+  if (found != files_.end()) return static_cast<int>(found - files_.begin());
+  files_.push_back(path);
+  return static_cast<int>(files_.size()) - 1;
+}
+
+void Diagnostics::error(Mark mark, std::string_view id, std::string text) {
+  items_.push_back({Severity::error, mark, std::string(id), std::move(text)});
+  ++error_count_;
+}
+
+void Diagnostics::warning(Mark mark, std::string_view id, std::string text) {
+  items_.push_back({Severity::warning, mark, std::string(id), std::move(text)});
+}
+
+std::string Diagnostics::to_string() const {
+  std::vector<const Diagnostic*> sorted;
+  for (const Diagnostic& item : items_) sorted.push_back(&item);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic* a, const Diagnostic* b) {
+    return std::tie(a->mark.file, a->mark.line, a->mark.column) <
+           std::tie(b->mark.file, b->mark.line, b->mark.column);
+  });
+  std::string out;
+  std::string previous;
+  for (const Diagnostic* item : sorted) {
+    std::string line;
+    if (item->mark.file >= 0 && item->mark.file < static_cast<int>(files_.size())) {
+      line += on_one_line(file(item->mark.file)) + ":";
+      if (item->mark.line > 0) line += fmt::format("{}:{}:", item->mark.line, item->mark.column);
+      line += " ";
+    }
+    line += item->severity == Severity::error ? "error: " : "warning: ";
+    line += on_one_line(item->text) + "\n";
+    // An anchor read through several aliases reports the same problem several times.
+    if (line != previous) out += line;
+    previous = std::move(line);
+  }
+  return out;
+}
+
+std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLongestWord = 100;  // longer is not a typing mistake
+  if (word.size() > kLongestWord) return {};
+  const int length = static_cast<int>(word.size());
+  // A word of one letter is near to every other one: no guess is better than that.
+  int best = std::min(std::max(1, length / 3), length - 1);
+  std::string nearest;
+  for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongestWord) continue;
+    const int distance = edit_distance(word, candidate);
+    if (distance < best || (distance == best && nearest.empty())) {
+      best = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(word, candidates);
+  return nearest.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", nearest);
+}
+
+}  // namespace footfall::core

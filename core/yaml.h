@@ -1,0 +1,57 @@
+// YAML as our own immutable tree with exact positions; the only door to yaml-cpp.
+//
+// Scalars stay text (YAML 1.2 meaning is given by the reader: only `true`/`false` are booleans).
+// Refused here, with a place: duplicate keys, tabs as indentation, `<<`, several documents, invalid
+// UTF-8, nesting deeper than 100, more than 200000 nodes after alias expansion, self-references,
+// files over 8 MB.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+
+namespace footfall::core {
+
+struct YamlEntry;
+
+// One node; a map keeps the order of its keys.
+struct YamlNode {
+  enum class Kind { null, scalar, sequence, map };
+  Kind kind = Kind::null;
+  std::string scalar;              // text of a scalar
+  bool quoted = false;             // written with quotes (or as a block scalar)
+  Mark mark;                       // where the node begins
+  std::vector<YamlNode> items;     // of a sequence
+  std::vector<YamlEntry> entries;  // of a map, in file order
+
+  bool is_null() const { return kind == Kind::null; }
+  bool is_scalar() const { return kind == Kind::scalar; }
+  bool is_sequence() const { return kind == Kind::sequence; }
+  bool is_map() const { return kind == Kind::map; }
+  // The value under a key, nullptr if there is none or this is not a map.
+  const YamlNode* find(std::string_view key) const;
+};
+
+struct YamlEntry {
+  std::string key;
+  Mark key_mark;
+  bool key_quoted = false;
+  YamlNode value;
+};
+
+// Reads a file; problems (also "cannot read") go to diagnostics, the result is then null.
+YamlNode load_yaml_file(const std::string& path, Diagnostics& diagnostics);
+// The same from text; `name` stands for the file in messages.
+YamlNode load_yaml_text(std::string_view text, const std::string& name, Diagnostics& diagnostics);
+
+// `base: OTHER.yaml` inheritance (relative to the file): maps merge by key in the base's order, new
+// keys last; everything else is replaced whole; `NAME: off` removes; `KEY+:` appends to a list.
+// Cycles and missing bases are errors. Load = load_yaml_file + resolve.
+YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics);
+// The same for text; `base:` is relative to the folder of `name`.
+YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
+                                  Diagnostics& diagnostics);
+
+}  // namespace footfall::core

@@ -1,0 +1,132 @@
+// The tick; see control_loop.h.
+#include "engine/control_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footfall::engine {
+namespace {
+
+std::vector<double> torque_limits(const model::RobotDescription& robot) {
+  std::vector<double> limits;
+  for (const model::JointDescription& joint : robot.joints) {
+    // An actuator without a stated limit is limited by the backend alone.
+    limits.push_back(joint.torque_limit > 0.0 ? joint.torque_limit : 1e9);
+  }
+  return limits;
+}
+
+int latency_ticks(double latency, double period) {
+  return static_cast<int>(std::ceil(latency / period - 1e-9));
+}
+
+}  // namespace
+
+tasks::ControllerSizes controller_sizes(const behaviors::Behavior& behavior) {
+  tasks::ControllerSizes sizes;
+  sizes.task_instances = std::max<int>(1, static_cast<int>(behavior.task_instances.size()));
+  sizes.contacts = std::max<int>(1, static_cast<int>(behavior.robot.contacts.size()));
+  sizes.task_rows = 0;
+  for (const behaviors::TaskInstance& task : behavior.task_instances) {
+    const bool joints = task.type == tasks::TaskType::joint_posture ||
+                        task.type == tasks::TaskType::joint_damping;
+    sizes.task_rows += joints ? behavior.robot.joint_count() : 3;
+  }
+  sizes.task_rows = std::clamp(sizes.task_rows, 1, core::kMaxAxes);
+  sizes.levels = std::max(1, sizes.task_instances);
+  return sizes;
+}
+
+ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& hardware,
+                         const LoopSettings& settings)
+    : behavior_(behavior),
+      hardware_(hardware),
+      period_(behavior.robot.period_s()),
+      signals_(behavior.signals),
+      model_(behavior.robot, settings.deviation),
+      machine_(std::make_unique<behaviors::Machine>(behavior, signals_)),
+      controller_(model_, torque_limits(behavior.robot), controller_sizes(behavior), period_),
+      estimator_(behavior.robot.joint_count()),
+      planners_(behavior, model_, latency_ticks(settings.planner_latency, period_)),
+      safety_(behavior.robot),
+      measure_(model_) {}
+
+void ControlLoop::start() {
+  hardware_.start();
+  tick_ = 0;
+  state_ = LoopState::running;
+  sense();
+  estimator_.estimate(sensors_, estimate_);
+  model_.update(estimate_);
+  planners_.start();
+  write_measured_signals();
+  machine_->start(measure_);
+}
+
+LoopState ControlLoop::tick() noexcept {
+  sense();
+  compute();
+  actuate();
+  return state_;
+}
+
+bool ControlLoop::sense() noexcept {
+  const bool fresh = hardware_.read(sensors_);
+  if (!fresh) faults_.add(core::Fault::sensor_stale);
+  return fresh;
+}
+
+void ControlLoop::compute() noexcept {
+  estimator_.estimate(sensors_, estimate_);
+  model_.update(estimate_);
+  write_measured_signals();
+  handle(safety_.check_state(sensors_, model_));
+  planners_.deliver(tick_, *machine_);
+  machine_->tick(tick_, measure_);
+  observe_support();
+  planners_.take(tick_, *machine_);
+  controller_.compute(machine_->control(), tick_, sensors_.tau.data());
+  std::copy_n(controller_.result().tau.begin(), model_.joint_count(), commands_.tau.begin());
+  handle(safety_.filter(commands_));
+  active_ = seen_;
+  seen_ = {};
+  write_control_signals();
+  if (state_ == LoopState::running && machine_->finished()) state_ = LoopState::finished;
+}
+
+void ControlLoop::actuate() noexcept {
+  hardware_.write(commands_);
+  ++tick_;
+}
+
+// A fault is counted and raised when it appears; it must go away before it counts again.
+void ControlLoop::handle(const SafetyFindings& findings) noexcept {
+  for (int i = 0; i < core::kFaultCount; ++i) {
+    const auto fault = static_cast<core::Fault>(i);
+    const auto index = static_cast<std::size_t>(i);
+    const bool mine = findings.found[index];
+    if (mine && !active_[index]) {
+      faults_.add(fault);
+      const core::Reaction reaction = behavior_.robot.reactions[index];
+      machine_->raise_fault(fault, reaction);
+      if (fault == core::Fault::fall || fault == core::Fault::simulator_warning) {
+        state_ = LoopState::fallen;
+      } else if (reaction == core::Reaction::safe_stop && state_ == LoopState::running) {
+        state_ = LoopState::stopped;
+      }
+    }
+    seen_[index] |= mine;
+  }
+}
+
+void ControlLoop::observe_support() noexcept {
+  const tasks::ControlSet& set = machine_->control().primary;
+  planners_.observe({set.contacts.data(), static_cast<std::size_t>(set.contact_count)}, period_);
+}
+
+void ControlLoop::safe_stop() noexcept {
+  machine_->enter_safe();
+  hardware_.safe_stop();
+}
+
+}  // namespace footfall::engine

@@ -1,0 +1,111 @@
+// One control tick, in order: read, estimate, model, machine, whole-body control, safety, write.
+// The same object runs over every backend; it knows no clock and creates no thread, so a lock-step
+// simulation is repeatable bit for bit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "behaviors/machine.h"
+#include "core/fault.h"
+#include "core/signal_table.h"
+#include "engine/estimator.h"
+#include "engine/planner_link.h"
+#include "engine/safety.h"
+#include "hal/hardware.h"
+#include "model/control_model.h"
+#include "tasks/whole_body_controller.h"
+
+namespace footfall::engine {
+
+struct LoopSettings {
+  model::ModelDeviation deviation;  // of the control model from the robot file
+  double planner_latency = 2e-3;    // s, lock-step
+};
+
+enum class LoopState : std::uint8_t {
+  running,
+  finished,  // the behavior reached a final state of its root
+  fallen,
+  stopped,   // a fault whose reaction is safe_stop
+};
+
+class ControlLoop {
+ public:
+  // Builds everything for the worst case. Throws std::runtime_error with one clear sentence (model).
+  ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& hardware,
+              const LoopSettings& settings);
+
+  // Starts the hardware, reads it once and enters the behavior's initial state. May throw.
+  void start();
+
+  // The tick in two halves, so that a caller can time control apart from the backend:
+  // sense() reads the hardware; control() computes and writes. Allocate nothing.
+  bool sense() noexcept;   // false: nothing new was read (counted; control() still runs)
+  void compute() noexcept; // estimate ... safety filter; commands are ready
+  void actuate() noexcept; // hardware write; the backend advances
+  LoopState tick() noexcept;
+
+  LoopState state() const noexcept { return state_; }
+  std::int64_t ticks() const noexcept { return tick_; }
+  double time() const noexcept { return static_cast<double>(tick_) * period_; }
+  double period() const noexcept { return period_; }
+
+  const behaviors::Behavior& behavior() const noexcept { return behavior_; }
+  behaviors::Machine& machine() noexcept { return *machine_; }
+  const behaviors::Machine& machine() const noexcept { return *machine_; }
+  const model::ControlModel& model() const noexcept { return model_; }
+  const tasks::WholeBodyController& controller() const noexcept { return controller_; }
+  const core::SignalTable& signals() const noexcept { return signals_; }
+  const hal::Sensors& sensors() const noexcept { return sensors_; }
+  const hal::Commands& commands() const noexcept { return commands_; }
+  const core::FaultCounters& faults() const noexcept { return faults_; }
+
+  // Ends the run: the machine's safe state, then the hardware's safe stop.
+  void safe_stop() noexcept;
+
+ private:
+  class LoopMeasure final : public behaviors::Measure {
+   public:
+    explicit LoopMeasure(const model::ControlModel& model) : model_(model) {}
+    double position(tasks::TaskType type, int point, int axis) const noexcept override {
+      return tasks::measured_position(model_, type, point, axis);
+    }
+
+   private:
+    const model::ControlModel& model_;
+  };
+
+  void handle(const SafetyFindings& findings) noexcept;
+  void observe_support() noexcept;
+  void write_measured_signals() noexcept;
+  void write_control_signals() noexcept;
+  void write_task_signals() noexcept;
+
+  const behaviors::Behavior& behavior_;
+  hal::Hardware& hardware_;
+  double period_;
+  core::SignalTable signals_;
+  model::ControlModel model_;
+  std::unique_ptr<behaviors::Machine> machine_;
+  tasks::WholeBodyController controller_;
+  TrueStateEstimator estimator_;
+  PlannerLink planners_;
+  SafetyFilter safety_;
+  LoopMeasure measure_;
+  hal::Sensors sensors_;
+  hal::Commands commands_;
+  model::State estimate_;
+  core::FaultCounters faults_;
+  std::array<bool, core::kFaultCount> active_{};  // faults present in the previous tick
+  std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
+  std::int64_t tick_ = 0;
+  LoopState state_ = LoopState::running;
+};
+
+// Capacities that a behavior needs at worst, for the whole-body controller.
+tasks::ControllerSizes controller_sizes(const behaviors::Behavior& behavior);
+
+}  // namespace footfall::engine

@@ -1,0 +1,100 @@
+// Lock-step planner traffic; see planner_link.h.
+#include "engine/planner_link.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footfall::engine {
+
+using behaviors::FootPlan;
+using behaviors::FootPlannerInput;
+using behaviors::PlanAnswer;
+using behaviors::PlannerInfo;
+using behaviors::PlanRequest;
+
+PlannerLink::PlannerLink(const behaviors::Behavior& behavior, const model::ControlModel& model,
+                         int latency_ticks)
+    : behavior_(behavior), model_(model), latency_ticks_(std::max(1, latency_ticks)) {}
+
+// A foot belongs to the side of the base on which it stands at the start; later the feet may be
+// close together or cross, and must not change sides by that.
+void PlannerLink::start() noexcept {
+  const auto& R = model_.R_WB();
+  const auto& p = model_.state().p_WB;
+  for (int c = 0; c < model_.contact_count(); ++c) {
+    const auto& x = model_.point(c).position;
+    const double y = R[1] * (x[0] - p[0]) + R[4] * (x[1] - p[1]) + R[7] * (x[2] - p[2]);
+    contact_side_[static_cast<std::size_t>(c)] = y >= 0.0 ? 1.0 : -1.0;
+  }
+  primed_ = false;
+  head_ = count_ = 0;
+}
+
+// v̂' = (g/h)(x - p) + (v - v̂)/τ: the pendulum predicts, the measured velocity corrects slowly, so
+// noise is averaged over τ without the lag of a plain low-pass.
+void PlannerLink::observe(std::span<const int> stance_contacts, double period) noexcept {
+  const auto& com = model_.com();
+  for (std::size_t i = 0; i < behavior_.planners.size(); ++i) {
+    const double tau = behavior_.planners[i].spec.velocity_filter;
+    auto& v = filtered_velocity_[i];
+    if (!primed_ || !(tau > 0.0) || stance_contacts.empty()) {
+      v = {com.velocity[0], com.velocity[1]};
+      continue;
+    }
+    std::array<double, 3> support{};
+    for (const int c : stance_contacts) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        support[k] += model_.point(c).position[k] / static_cast<double>(stance_contacts.size());
+      }
+    }
+    const double height = std::max(0.1, com.position[2] - support[2]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      v[k] += period * (behavior_.planners[i].spec.gravity / height * (com.position[k] - support[k]) +
+                        (com.velocity[k] - v[k]) / tau);
+    }
+  }
+  primed_ = true;
+}
+
+void PlannerLink::deliver(std::int64_t tick, behaviors::Machine& machine) noexcept {
+  while (count_ > 0 && pending_[head_].due <= tick) {
+    machine.deliver(pending_[head_].answer);
+    head_ = (head_ + 1) % pending_.size();
+    --count_;
+  }
+}
+
+void PlannerLink::take(std::int64_t tick, behaviors::Machine& machine) noexcept {
+  for (const PlanRequest& request : machine.plan_requests()) {
+    const PlanAnswer computed = answer(request, machine.parameters());
+    if (count_ == pending_.size()) continue;  // its deadline will report it
+    pending_[(head_ + count_) % pending_.size()] = {tick + latency_ticks_, computed};
+    ++count_;
+  }
+}
+
+PlanAnswer PlannerLink::answer(const PlanRequest& request,
+                               std::span<const double> parameters) const noexcept {
+  const PlannerInfo& planner = behavior_.planners[static_cast<std::size_t>(request.planner)];
+  FootPlannerInput in;
+  const auto& com = model_.com();
+  const auto& stance = model_.point(request.stance).position;
+  in.com = {com.position[0], com.position[1]};
+  in.com_vel = filtered_velocity_[static_cast<std::size_t>(request.planner)];
+  in.com_height = com.position[2] - stance[2];
+  in.stance = stance;
+  in.yaw = model_.rpy()[2];
+  if (planner.goal_slot >= 0) {
+    const auto slot = static_cast<std::size_t>(planner.goal_slot);
+    in.goal = {parameters[slot], parameters[slot + 1]};
+  } else if (planner.goal.size() >= 2) {
+    in.goal = {planner.goal[0], planner.goal[1]};
+  }
+  in.switch_in = request.switch_in;
+  in.swing_side = contact_side_[static_cast<std::size_t>(request.swing)];
+  const FootPlan plan = plan_foot(planner.spec, in);
+  return {request.planner, request.sequence,    plan.ok,
+          plan.target,     plan.predicted_pos, plan.predicted_vel, plan.extension};
+}
+
+}  // namespace footfall::engine

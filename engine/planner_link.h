@@ -1,0 +1,48 @@
+// Between the machine's plan requests and the planners, in lock-step: an answer is computed from the
+// state at the asking and arrives a declared simulated latency later.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "behaviors/machine.h"
+#include "model/control_model.h"
+
+namespace footfall::engine {
+
+class PlannerLink {
+ public:
+  // latency_ticks >= 1: an answer is never there in the tick that asked.
+  PlannerLink(const behaviors::Behavior& behavior, const model::ControlModel& model,
+              int latency_ticks);
+
+  // At the start pose, the model being updated: which side each contact belongs to.
+  void start() noexcept;
+  // Updates what planners observe every tick (the CoM velocity filter). period in s.
+  void observe(std::span<const int> stance_contacts, double period) noexcept;
+  // Hands over the answers due at this tick.
+  void deliver(std::int64_t tick, behaviors::Machine& machine) noexcept;
+  // Answers this tick's requests, to be delivered later. Requests beyond the capacity are refused
+  // and answered as failed.
+  void take(std::int64_t tick, behaviors::Machine& machine) noexcept;
+
+ private:
+  struct Pending {
+    std::int64_t due = 0;
+    behaviors::PlanAnswer answer;
+  };
+  behaviors::PlanAnswer answer(const behaviors::PlanRequest& request,
+                               std::span<const double> parameters) const noexcept;
+
+  const behaviors::Behavior& behavior_;
+  const model::ControlModel& model_;
+  int latency_ticks_;
+  std::array<Pending, 64> pending_{};
+  std::size_t head_ = 0, count_ = 0;
+  std::array<std::array<double, 2>, core::kMaxPlanners> filtered_velocity_{};
+  std::array<double, core::kMaxContacts> contact_side_{};  // +1 left, -1 right of the base
+  bool primed_ = false;
+};
+
+}  // namespace footfall::engine

@@ -1,0 +1,16 @@
+// The files of lab/web/ and the plotting library as text in the program; the build makes the source
+// (lab/web/report_assets.cmake).
+#pragma once
+
+#include <string_view>
+
+namespace footfall::lab {
+
+extern const std::string_view kReportHtml;  // the page with {{places}}
+extern const std::string_view kReportCss;
+extern const std::string_view kReportJs;
+extern const std::string_view kUplotJs;  // empty without npm
+extern const std::string_view kUplotCss;
+extern const std::string_view kUplotLicense;
+
+}  // namespace footfall::lab

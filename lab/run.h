@@ -1,0 +1,71 @@
+// One run in lock-step or paced: ticks the control loop until something ends it, fires scheduled
+// events (pushes), moves the goal, feeds metrics and log. The only loop around ControlLoop.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/timing_histogram.h"
+#include "engine/control_loop.h"
+#include "engine/log_writer.h"
+#include "lab/run_metrics.h"
+
+namespace footfall::lab {
+
+// Something to do once, at a time or at a phase of a step.
+struct ScheduledEvent {
+  std::optional<double> at_time;  // s; without it:
+  std::int64_t at_step = 0;       // after this many counted steps ...
+  double phase = 0.0;             // ... plus this part of the last step's duration
+  std::string label;              // for the log
+  std::function<void()> fire;
+};
+
+struct RunStatus {
+  double time = 0.0;
+  std::int64_t steps = 0;
+  std::string state;      // path of the first active atomic state
+  double real_time_factor = 0.0;
+};
+
+struct RunSpec {
+  std::int64_t max_steps = 0;  // 0: no bound
+  double max_time = 20.0;      // s; 0: no bound
+  std::optional<std::array<double, 2>> goal;           // m, world
+  std::optional<std::array<double, 2>> goal_velocity;  // m/s, world; the goal moves from the start
+  std::vector<ScheduledEvent> events;
+  bool realtime = false;       // paced by the wall clock
+  int log_every = 6;           // ticks; 1: all
+  engine::LogWriter* log = nullptr;
+  const std::atomic<bool>* stop = nullptr;  // set by Ctrl-C
+  std::function<void(const RunStatus&)> status;  // about five times a second of wall time
+  // Counts heap allocations of this thread while armed; null: not counted.
+  void (*arm_allocations)(bool) = nullptr;
+  std::int64_t (*allocations)() = nullptr;
+};
+
+enum class RunEnd { steps, time, fall, fault, stopped, finished };
+const char* run_end_name(RunEnd end);
+
+struct RunResult {
+  RunEnd end = RunEnd::time;
+  RunFigures figures;
+  core::FaultCounters faults;
+  core::TimingHistogram tick_time;
+  std::int64_t allocations = -1;  // within ticks; -1: not counted
+  double real_time_factor = 0.0;
+  double wall_time = 0.0;
+};
+
+// Runs from start to end. Throws what ControlLoop::start() throws; nothing after that.
+RunResult run(engine::ControlLoop& loop, RunSpec& spec);
+
+// Whether the behavior has a parameter that the goal options can move.
+bool has_goal(const behaviors::Behavior& behavior);
+
+}  // namespace footfall::lab

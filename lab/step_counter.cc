@@ -1,0 +1,43 @@
+// Steps from contacts and foot heights; see step_counter.h.
+#include "lab/step_counter.h"
+
+#include <algorithm>
+
+namespace footfall::lab {
+
+StepEvent StepCounter::observe(const bool* contact, const double* height) noexcept {
+  StepEvent event;
+  int standing = 0;
+  for (int f = 0; f < feet_; ++f) standing += contact[f] ? 1 : 0;
+  for (int f = 0; f < feet_; ++f) {
+    Foot& foot = feet_state_[static_cast<std::size_t>(f)];
+    foot.landed = false;
+    if (first_) {
+      foot.in_contact = contact[f];
+      foot.lift_height = height[f];
+    }
+    if (!contact[f]) {
+      if (foot.in_contact) {
+        foot = {false, false, false, 0, height[f], 0.0};
+      }
+      ++foot.air_ticks;
+      foot.rise = std::max(foot.rise, height[f] - foot.lift_height);
+      if (foot.air_ticks * period_ > kMaxSwing) swing_too_long_ = true;
+    } else if (!foot.in_contact) {
+      foot.in_contact = true;
+      // Half a period of tolerance: 60 ms is a whole number of ticks at most rates.
+      const bool swung = (foot.air_ticks + 0.5) * period_ >= kMinFlight && foot.rise >= kMinRise;
+      if (swung) foot.pending = foot.landed = true;
+    }
+    if (foot.pending && contact[f] && standing == 1) {
+      foot.pending = false;
+      ++steps_;
+      worst_clearance_ = std::min(worst_clearance_, foot.rise);
+      event = {f, foot.air_ticks * period_, foot.rise};
+    }
+  }
+  first_ = false;
+  return event;
+}
+
+}  // namespace footfall::lab

@@ -1,0 +1,53 @@
+// Counts steps as docs/architecture.md defines them: a foot is without ground contact for at least
+// 60 ms, rises at least 2 cm, and then becomes the foot that stands alone. Fed once a tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/limits.h"
+
+namespace footfall::lab {
+
+struct StepEvent {
+  int foot = -1;             // contact index of the foot that became the stance foot; -1: no step
+  double flight_time = 0.0;  // s without ground contact
+  double clearance = 0.0;    // m, highest above where it left the ground
+};
+
+class StepCounter {
+ public:
+  static constexpr double kMinFlight = 0.06;  // s
+  static constexpr double kMinRise = 0.02;    // m
+  static constexpr double kMaxSwing = 1.0;    // s: a longer swing is a fall
+
+  StepCounter(int feet, double period) : feet_(feet), period_(period) {}
+
+  // contact: ground contact per foot; height: z of each foot's contact point, m.
+  StepEvent observe(const bool* contact, const double* height) noexcept;
+
+  std::int64_t steps() const noexcept { return steps_; }
+  bool swing_too_long() const noexcept { return swing_too_long_; }
+  // True in the tick in which this foot came down after a counted flight.
+  bool touched_down(int foot) const noexcept { return feet_state_[static_cast<std::size_t>(foot)].landed; }
+  double worst_clearance() const noexcept { return worst_clearance_; }  // m, over counted steps
+
+ private:
+  struct Foot {
+    bool in_contact = true;
+    bool pending = false;  // came down after a real swing, the other foot still stands
+    bool landed = false;
+    int air_ticks = 0;
+    double lift_height = 0.0;
+    double rise = 0.0;
+  };
+  int feet_;
+  double period_;
+  std::array<Foot, core::kMaxContacts> feet_state_{};
+  std::int64_t steps_ = 0;
+  double worst_clearance_ = 1e9;
+  bool swing_too_long_ = false;
+  bool first_ = true;
+};
+
+}  // namespace footfall::lab

@@ -1,0 +1,97 @@
+// Kinematics and dynamics of the robot as the controller believes it to be; updated once a tick
+// between the estimator and the state machine. Owns its own MuJoCo model, never a simulated one.
+//
+//   A q̈ + b + g = Uᵀ τ + Jᵀ f        (f: force of the ground ON the robot; [Kim16] eq. (28) has
+//                                       F_r = -f, force of the robot on the ground)
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/robot_description.h"
+#include "model/state.h"
+#include "model/tree_factor.h"
+
+namespace footfall::model {
+
+// What the controller believes differently from the robot's file.
+struct ModelDeviation {
+  double mass_scale = 1.0;                                // every mass and inertia
+  std::map<std::string, std::array<double, 3>> com_shift;  // m, link frame
+};
+
+// A 3-row task Jacobian and what goes with it; pointers stay valid for the model's life.
+struct Kinematics3 {
+  std::array<double, 3> position{};       // m, world (for angular: unused)
+  std::array<double, 3> velocity{};       // J q̇
+  std::array<double, 3> bias{};           // J̇ q̇
+  std::vector<double> jacobian;           // 3 x nv, row-major
+};
+
+class ControlModel {
+ public:
+  // Throws std::runtime_error with one clear sentence (MuJoCo's own text for a malformed MJCF).
+  explicit ControlModel(const RobotDescription& robot, const ModelDeviation& deviation = {});
+  ~ControlModel();
+  ControlModel(const ControlModel&) = delete;
+  ControlModel& operator=(const ControlModel&) = delete;
+
+  int nv() const noexcept { return nv_; }                  // 6 + joints
+  int joint_count() const noexcept { return nv_ - 6; }
+  int point_count() const noexcept { return static_cast<int>(points_.size()); }
+  int contact_count() const noexcept { return contact_count_; }
+  double mass() const noexcept { return mass_; }           // kg
+  double gravity() const noexcept { return gravity_; }     // m/s^2, downwards
+
+  // Everything below is of the state given last. No allocation. `normal_up`: contact points lie at
+  // centre - radius * world z.
+  void update(const State& state) noexcept;
+  const State& state() const noexcept { return state_; }
+
+  // Points: the robot's contacts in order, then its named points. Contact points are material
+  // points of the foot at this instant.
+  const Kinematics3& point(int index) const noexcept {
+    return points_[static_cast<std::size_t>(index)];
+  }
+  const Kinematics3& com() const noexcept { return com_; }
+  // Angular velocity of the floating base, world axes: velocity = ω, bias = J̇_ω q̇.
+  const Kinematics3& base_rotation() const noexcept { return base_; }
+  const std::array<double, 9>& R_WB() const noexcept { return R_WB_; }  // row-major
+  const std::array<double, 3>& rpy() const noexcept { return rpy_; }    // rad, R = Rz Ry Rx
+  // About the CoM, world axes: linear (kg m/s) then angular (kg m^2/s).
+  const std::array<double, 6>& centroidal_momentum() const noexcept { return momentum_; }
+
+  const std::vector<double>& bias() const noexcept { return bias_; }  // b + g, nv
+  TreeFactor factor() const noexcept;
+  // g = -M_total J_comᵀ g_vec (nv) and the dense, symmetric A (nv x nv); for tests and tools.
+  void gravity_force(double* g) const noexcept;
+  void mass_matrix(double* A) const noexcept;
+
+ private:
+  struct Mujoco;
+  void update_points() noexcept;
+  void update_com_and_base() noexcept;
+  std::array<double, 3> point_bias(int body, const double* p) const noexcept;
+
+  std::unique_ptr<Mujoco> mj_;
+  int nv_ = 0;
+  int contact_count_ = 0;
+  int base_body_ = 0;
+  double mass_ = 0.0;
+  double gravity_ = 9.81;
+  State state_;
+  std::vector<int> point_sites_;
+  std::vector<double> point_radii_;
+  std::vector<Kinematics3> points_;
+  Kinematics3 com_;
+  Kinematics3 base_;
+  std::array<double, 9> R_WB_{};
+  std::array<double, 3> rpy_{};
+  std::array<double, 6> momentum_{};
+  std::vector<double> bias_;
+};
+
+}  // namespace footfall::model

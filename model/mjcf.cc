@@ -1,0 +1,62 @@
+// MJCF from memory through MuJoCo's virtual file system; see mjcf.h.
+#include "model/mjcf.h"
+
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+#include "core/mujoco_errors.h"
+
+namespace footfall::model {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+struct VfsDeleter {
+  void operator()(mjVFS* vfs) const {
+    mj_deleteVFS(vfs);
+    delete vfs;
+  }
+};
+
+[[noreturn]] void refuse(const std::string& what, const char* reason) {
+  std::string text = reason;
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  throw std::runtime_error(what + ": error: MuJoCo refuses it: " + text);
+}
+
+}  // namespace
+
+mjModel_* compile_mjcf(const std::string& xml, const std::string& what) {
+  core::install_mujoco_error_handlers();
+  std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);
+  mj_defaultVFS(vfs.get());
+  mj_makeEmptyFileVFS(vfs.get(), "scene.xml", static_cast<int>(xml.size()));
+  const int index = mj_findFileVFS(vfs.get(), "scene.xml");
+  std::memcpy(vfs->filedata[index], xml.data(), xml.size());
+  std::array<char, 1024> error{};
+  mjModel* m = mj_loadXML("scene.xml", vfs.get(), error.data(), static_cast<int>(error.size()));
+  if (!m) refuse(what, error.data());
+  return m;
+}
+
+mjModel_* load_robot_model(const std::string& model_path) {
+  if (ends_with(model_path, ".urdf")) {
+    core::install_mujoco_error_handlers();
+    std::array<char, 1024> error{};
+    mjModel* m =
+        mj_loadXML(model_path.c_str(), nullptr, error.data(), static_cast<int>(error.size()));
+    if (!m) refuse(model_path, error.data());
+    return m;
+  }
+  return compile_mjcf("<mujoco><compiler discardvisual=\"true\"/><include file=\"" + model_path +
+                          "\"/></mujoco>",
+                      model_path);
+}
+
+}  // namespace footfall::model

@@ -1,0 +1,91 @@
+// What a robot is, as its `robot: 1` file says: data for every robot, code for none.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/fault.h"
+#include "core/yaml.h"
+
+namespace footfall::model {
+
+// One actuated joint, in the order of commands and logs.
+struct JointDescription {
+  std::string name;
+  double position_min = 0.0;   // rad
+  double position_max = 0.0;   // rad
+  double torque_limit = 0.0;   // N m, symmetric
+  double posture = 0.0;        // rad, nominal
+  double spring = 0.0;         // N m/rad, 0: no series elasticity given
+  double rotor = 0.0;          // kg m^2, reflected
+};
+
+enum class ContactType { point, surface, fixed };
+
+// A place that can touch the world.
+struct ContactDescription {
+  std::string name;
+  std::string site;       // MJCF site at the centre of the foot's ball
+  ContactType type = ContactType::point;
+  std::string group;      // joint group of its leg, may be empty
+  double radius = 0.0;    // m; the contact point is centre - radius * ground normal
+};
+
+struct PointDescription {
+  std::string name;
+  std::string site;
+};
+
+struct JointGroup {
+  std::string name;
+  std::vector<int> joints;  // indices into joints
+};
+
+struct SensorDescription {
+  std::string imu_site;
+  std::vector<std::string> mocap_sites;
+  std::vector<int> switches;  // contact indices
+};
+
+struct RobotDescription {
+  std::string name;
+  std::string path;        // of the robot file
+  std::string model_path;  // MJCF or URDF, absolute
+  std::string floating_base;
+  std::int64_t rate_mhz = 1'000'000;  // servo rate in millihertz (exact)
+  double standing_height = 0.0;       // m, origin of the floating base above the ground
+  std::vector<JointDescription> joints;
+  std::vector<JointGroup> groups;
+  std::vector<ContactDescription> contacts;
+  std::vector<PointDescription> points;
+  SensorDescription sensors;
+  std::vector<std::array<std::string, 2>> symmetry;  // names that change places in a mirror image
+  double tilt_limit = 0.8;           // rad
+  double height_limit = 0.6;         // part of standing_height below which it has fallen
+  double torque_step_limit = 0.0;    // N m between neighbouring ticks; 0: none
+  // By fault. What the file does not name: fall and simulator_warning safe_state, non_finite
+  // safe_stop, the rest keep_going.
+  std::array<core::Reaction, core::kFaultCount> reactions{};
+
+  double rate_hz() const { return static_cast<double>(rate_mhz) * 1e-3; }
+  double period_s() const { return 1e3 / static_cast<double>(rate_mhz); }
+  int joint_count() const { return static_cast<int>(joints.size()); }
+  int find_joint(std::string_view name) const;
+  int find_contact(std::string_view name) const;
+  int find_group(std::string_view name) const;
+};
+
+// Loads a robot file and checks it (unknown keys, dimensions, globs, references between its parts).
+// Problems go to diagnostics; the result is meaningful only without errors.
+RobotDescription load_robot(const std::string& path, core::Diagnostics& diagnostics);
+
+// Where a robot is found by name: NAME itself if it is a file, else DIR/robots/NAME/robot.yaml for
+// each folder of `search` in turn; empty if nowhere.
+std::string find_robot_file(const std::string& name, const std::vector<std::string>& search);
+
+}  // namespace footfall::model

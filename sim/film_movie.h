@@ -1,0 +1,29 @@
+// A video file, made by ffmpeg from frames that are piped to it. After or beside a run.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "sim/image.h"
+
+namespace footfall::sim {
+
+class MovieWriter {
+ public:
+  // Throws std::runtime_error with one sentence if ffmpeg is missing or the folder cannot be
+  // written.
+  MovieWriter(const std::string& path, int width, int height, double frames_per_second);
+  ~MovieWriter();
+  MovieWriter(const MovieWriter&) = delete;
+  MovieWriter& operator=(const MovieWriter&) = delete;
+  // Adds a frame of the size given above. Throws std::runtime_error if ffmpeg takes no more.
+  void add(const Image& frame);
+  // Ends the file. Throws std::runtime_error if ffmpeg reports an error.
+  void finish();
+
+ private:
+  std::string path_;
+  std::FILE* pipe_ = nullptr;
+};
+
+}  // namespace footfall::sim

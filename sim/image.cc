@@ -1,0 +1,58 @@
+// Pictures; see image.h. The one place with stb's implementation of PNG.
+#include "sim/image.h"
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace footfall::sim {
+
+void Image::paste(const Image& tile, int left, int top) {
+  const int first = std::max(0, -left);
+  const int columns = std::min(tile.width, width - left) - first;
+  if (columns <= 0) return;
+  for (int row = std::max(0, -top); row < std::min(tile.height, height - top); ++row) {
+    const auto from = static_cast<std::size_t>(row) * static_cast<std::size_t>(tile.width) +
+                      static_cast<std::size_t>(first);
+    const auto to = static_cast<std::size_t>(top + row) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(left + first);
+    std::copy_n(tile.rgb.data() + 3 * from, 3 * columns, rgb.data() + 3 * to);
+  }
+}
+
+std::vector<std::uint8_t> encode_png(const Image& image) {
+  std::vector<std::uint8_t> bytes;
+  const auto append = [](void* context, void* data, int size) {
+    auto& out = *static_cast<std::vector<std::uint8_t>*>(context);
+    const auto* begin = static_cast<const std::uint8_t*>(data);
+    out.insert(out.end(), begin, begin + size);
+  };
+  if (stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(),
+                             3 * image.width) == 0) {
+    throw std::runtime_error("cannot encode a picture of " + std::to_string(image.width) + " x " +
+                             std::to_string(image.height) + " pixels");
+  }
+  return bytes;
+}
+
+void write_png(const Image& image, const std::string& path) {
+  const std::vector<std::uint8_t> bytes = encode_png(image);
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw std::runtime_error("cannot write the picture '" + path + "'");
+}
+
+}  // namespace footfall::sim

@@ -1,0 +1,218 @@
+// Lock-step MuJoCo; see mujoco_backend.h.
+#include "sim/mujoco_backend.h"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/mujoco_errors.h"
+#include "model/mjcf.h"
+#include "sim/scene.h"
+
+namespace footfall::sim {
+namespace {
+
+constexpr int kGround = -1;
+constexpr int kOtherBody = -2;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// The foot geom of a contact: the collision sphere centred at its site.
+int foot_geom(const mjModel* m, const mjData* d, int site) {
+  for (int g = 0; g < m->ngeom; ++g) {
+    if (m->geom_bodyid[g] != m->site_bodyid[site] || m->geom_type[g] != mjGEOM_SPHERE) continue;
+    if (m->geom_contype[g] == 0 && m->geom_conaffinity[g] == 0) continue;
+    if (mju_dist3(d->geom_xpos + 3 * g, d->site_xpos + 3 * site) < 1e-6) return g;
+  }
+  return -1;
+}
+
+}  // namespace
+
+MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world,
+                             std::uint64_t /*seed: no imperfection is random yet*/)
+    : robot_(robot), world_(world) {
+  model_ = model::compile_mjcf(scene_xml(robot, world, false), robot.model_path);
+  data_ = mj_makeData(model_);
+  mj_forward(model_, data_);
+  for (const model::JointDescription& j : robot.joints) {
+    const int id = mj_name2id(model_, mjOBJ_JOINT, j.name.c_str());
+    if (id < 0) throw std::runtime_error(robot.path + ": error: no joint '" + j.name + "' in the model");
+    qpos_.push_back(model_->jnt_qposadr[id]);
+    dof_.push_back(model_->jnt_dofadr[id]);
+    int actuator = -1;
+    for (int a = 0; a < model_->nu; ++a) {
+      if (model_->actuator_trntype[a] == mjTRN_JOINT && model_->actuator_trnid[2 * a] == id) actuator = a;
+    }
+    if (actuator < 0) {
+      throw std::runtime_error(robot.path + ": error: joint '" + j.name + "' has no motor in the model");
+    }
+    actuator_.push_back(actuator);
+    torque_limit_.push_back(j.torque_limit);
+  }
+  contact_of_geom_.assign(at(model_->ngeom), kOtherBody);
+  for (int g = 0; g < model_->ngeom; ++g) {
+    if (model_->geom_bodyid[g] == 0) contact_of_geom_[at(g)] = kGround;
+  }
+  for (std::size_t c = 0; c < robot.contacts.size(); ++c) {
+    const int site = mj_name2id(model_, mjOBJ_SITE, robot.contacts[c].site.c_str());
+    const int geom = site < 0 ? -1 : foot_geom(model_, data_, site);
+    if (geom < 0) {
+      throw std::runtime_error(robot.path + ": error: contact '" + robot.contacts[c].name +
+                               "' has no collision sphere centred at its site in the model");
+    }
+    contact_of_geom_[at(geom)] = static_cast<int>(c);
+  }
+  const double step = model_->opt.timestep;
+  const auto delay = static_cast<std::size_t>(std::llround(world.actuators.command_delay / step));
+  delay_line_.assign(delay + 1, std::vector<double>(robot.joints.size(), 0.0));
+}
+
+MujocoBackend::~MujocoBackend() {
+  mj_deleteData(data_);
+  mj_deleteModel(model_);
+}
+
+// Nominal posture, upright, at rest, the lowest foot point touching the ground.
+void MujocoBackend::place_at_posture() {
+  mj_resetData(model_, data_);
+  for (std::size_t j = 0; j < qpos_.size(); ++j) data_->qpos[qpos_[j]] = robot_.joints[j].posture;
+  mj_kinematics(model_, data_);
+  double lowest = 1e9;
+  for (const model::ContactDescription& c : robot_.contacts) {
+    const int site = mj_name2id(model_, mjOBJ_SITE, c.site.c_str());
+    lowest = std::min(lowest, data_->site_xpos[3 * site + 2] - c.radius);
+  }
+  if (!robot_.contacts.empty()) data_->qpos[2] -= lowest;
+  mj_forward(model_, data_);
+}
+
+void MujocoBackend::start() {
+  place_at_posture();
+  for (auto& line : delay_line_) std::fill(line.begin(), line.end(), 0.0);
+  delay_head_ = 0;
+  pushes_ = {};
+  tick_ = 0;
+  stopped_ = false;
+  warnings_at_start_ = warnings();
+}
+
+std::int64_t MujocoBackend::warnings() const noexcept {
+  std::int64_t sum = core::mujoco_warning_count();
+  for (const auto& w : data_->warning) sum += w.number;
+  return sum;
+}
+
+bool MujocoBackend::read(hal::Sensors& s) noexcept {
+  s.time_ns = tick_ * 1'000'000'000'000LL / robot_.rate_mhz;
+  for (std::size_t j = 0; j < qpos_.size(); ++j) {
+    s.q[j] = data_->qpos[qpos_[j]];
+    s.qd[j] = data_->qvel[dof_[j]];
+    s.tau[j] = data_->actuator_force[actuator_[j]];
+  }
+  s.has_truth = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    s.p_WB[k] = data_->qpos[k];
+    s.v_WB[k] = data_->qvel[k];
+    s.w_WB_B[k] = data_->qvel[3 + k];
+  }
+  for (std::size_t k = 0; k < 4; ++k) s.q_WB[k] = data_->qpos[3 + k];
+  s.gyro = s.w_WB_B;
+  sense_contacts(s);
+  s.backend_fault = warnings() != warnings_at_start_;
+  return true;
+}
+
+// Contacts of the last physics step: forces on the feet, and whether anything else touched.
+void MujocoBackend::sense_contacts(hal::Sensors& s) noexcept {
+  s.contact.fill(false);
+  for (auto& f : s.force) f = {};
+  s.body_contact = false;
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& con = data_->contact[i];
+    if (con.exclude != 0 || con.efc_address < 0) continue;
+    std::array<double, 6> local{};
+    mj_contactForce(model_, data_, i, local.data());
+    if (!(local[0] > 0.0)) continue;
+    std::array<double, 3> world{};
+    mju_mulMatTVec(world.data(), con.frame, local.data(), 3, 3);
+    const std::array<int, 2> geoms = {con.geom1, con.geom2};
+    for (std::size_t side = 0; side < 2; ++side) {
+      const int owner = contact_of_geom_[at(geoms[side])];
+      if (owner == kOtherBody) s.body_contact = true;
+      if (owner < 0) continue;
+      if (contact_of_geom_[at(geoms[1 - side])] == kGround) s.contact[at(owner)] = true;
+      const double sign = side == 1 ? 1.0 : -1.0;  // the force acts on geom2
+      for (std::size_t k = 0; k < 3; ++k) s.force[at(owner)][k] += sign * world[k];
+    }
+  }
+}
+
+void MujocoBackend::write(const hal::Commands& commands) noexcept {
+  for (int step = 0; step < world_.physics.steps_per_tick; ++step) {
+    std::vector<double>& slot = delay_line_[delay_head_];
+    for (std::size_t j = 0; j < slot.size(); ++j) {
+      slot[j] = std::clamp(commands.tau[j], -torque_limit_[j], torque_limit_[j]);
+    }
+    delay_head_ = (delay_head_ + 1) % delay_line_.size();
+    const std::vector<double>& now = delay_line_[delay_head_];  // the oldest: written `delay` ago
+    for (std::size_t j = 0; j < now.size(); ++j) data_->ctrl[actuator_[j]] = stopped_ ? 0.0 : now[j];
+    apply_pushes();
+    mj_step(model_, data_);
+  }
+  ++tick_;
+}
+
+void MujocoBackend::apply_pushes() noexcept {
+  for (ActivePush& p : pushes_) {
+    if (p.body == 0) continue;
+    double* force = data_->xfrc_applied + 6 * p.body;
+    for (std::size_t k = 0; k < 3; ++k) force[k] = p.steps_left > 0 ? p.force[k] : 0.0;
+    if (p.steps_left-- <= 0) p = {};
+  }
+}
+
+bool MujocoBackend::push(int body, double force, double direction, double duration) noexcept {
+  const auto free_slot = std::find_if(pushes_.begin(), pushes_.end(),
+                                      [](const ActivePush& p) { return p.body == 0; });
+  if (free_slot == pushes_.end()) return false;
+  const double* q = data_->qpos + 3;
+  const double yaw = std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]),
+                                1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
+  free_slot->body = body;
+  free_slot->force = {force * std::cos(yaw + direction), force * std::sin(yaw + direction), 0.0};
+  free_slot->steps_left = static_cast<int>(std::llround(duration / model_->opt.timestep));
+  return true;
+}
+
+int MujocoBackend::find_body(const std::string& name) const {
+  return mj_name2id(model_, mjOBJ_BODY, name.c_str());
+}
+
+PhysicsFacts MujocoBackend::facts() const {
+  PhysicsFacts f;
+  f.timestep = model_->opt.timestep;
+  f.friction = world_.friction;
+  f.equalities = model_->neq;
+  f.mocap_bodies = model_->nmocap;
+  f.mass = model_->body_subtreemass[1];
+  for (int g = 0; g < model_->ngeom; ++g) {
+    if (contact_of_geom_[at(g)] < 0) continue;
+    f.foot_radius_max = std::max(f.foot_radius_max, model_->geom_size[3 * g]);
+    f.condim_max = std::max(f.condim_max, model_->geom_condim[g]);
+  }
+  for (int g = 0; g < model_->ngeom; ++g) {
+    if (contact_of_geom_[at(g)] == kGround) f.condim_max = std::max(f.condim_max, model_->geom_condim[g]);
+  }
+  for (int i = 0; i < model_->nv; ++i) {
+    f.damping_max = std::max(f.damping_max, model_->dof_damping[i]);
+    f.armature_max = std::max(f.armature_max, model_->dof_armature[i]);
+  }
+  return f;
+}
+
+void MujocoBackend::safe_stop() noexcept { stopped_ = true; }
+
+}  // namespace footfall::sim

@@ -1,0 +1,83 @@
+// MuJoCo as a robot: steps physics in lock-step with the tick, reports sensors and what went wrong.
+// Its model and data are its own; the controller never sees them.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/hardware.h"
+#include "model/robot_description.h"
+#include "sim/disturbance.h"
+#include "sim/world_description.h"
+
+struct mjModel_;
+struct mjData_;
+
+namespace footfall::sim {
+
+// A force on a body's centre of mass, constant in world axes while it acts.
+struct ActivePush {
+  int body = 0;
+  std::array<double, 3> force{};  // N, world
+  int steps_left = 0;             // physics steps
+};
+
+// The facts of the compiled physics that every figure rests on; printed with a run's summary.
+struct PhysicsFacts {
+  double timestep = 0.0;          // s
+  double friction = 0.0;          // of the ground
+  double foot_radius_max = 0.0;   // m
+  int condim_max = 0;             // of any foot contact
+  double damping_max = 0.0;       // of any joint
+  double armature_max = 0.0;
+  int equalities = 0;             // welds and other constraints
+  int mocap_bodies = 0;
+  double mass = 0.0;              // kg
+};
+
+class MujocoBackend final : public hal::Hardware {
+ public:
+  // Throws std::runtime_error (MuJoCo's own text) if the scene does not compile.
+  MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world,
+                std::uint64_t seed);
+  ~MujocoBackend() override;
+
+  std::string name() const override { return "mujoco"; }
+  void start() override;
+  bool read(hal::Sensors& sensors) noexcept override;
+  void write(const hal::Commands& commands) noexcept override;
+  void safe_stop() noexcept override;
+
+  // Begins a push on a body's CoM; direction in rad from the robot's heading, 0 forward, 90° left.
+  // Names were checked by find_body(). At most four at once; false if there are more.
+  bool push(int body, double force, double direction, double duration) noexcept;
+  int find_body(const std::string& name) const;  // -1: none
+  PhysicsFacts facts() const;
+
+  mjModel_* model() noexcept { return model_; }
+  mjData_* data() noexcept { return data_; }
+
+ private:
+  void apply_pushes() noexcept;
+  void sense_contacts(hal::Sensors& sensors) noexcept;
+  std::int64_t warnings() const noexcept;
+  void place_at_posture();
+
+  const model::RobotDescription& robot_;
+  WorldDescription world_;
+  mjModel_* model_ = nullptr;
+  mjData_* data_ = nullptr;
+  std::vector<int> qpos_, dof_, actuator_;  // by joint of the robot file
+  std::vector<int> contact_of_geom_;        // robot contact index, -1: ground, -2: another body
+  std::vector<double> torque_limit_;
+  std::vector<std::vector<double>> delay_line_;  // commands on their way, one a physics step
+  std::size_t delay_head_ = 0;
+  std::array<ActivePush, 4> pushes_{};
+  std::int64_t warnings_at_start_ = 0;
+  std::int64_t tick_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace footfall::sim

@@ -1,0 +1,83 @@
+// MJCF text of a world; see scene.h.
+#include "sim/scene.h"
+
+#include <fmt/format.h>
+
+namespace footfall::sim {
+namespace {
+
+const char* integrator_name(Integrator i) {
+  switch (i) {
+    case Integrator::euler: return "Euler";
+    case Integrator::rk4: return "RK4";
+    case Integrator::implicit: return "implicit";
+  }
+  return "Euler";
+}
+
+const char* solver_name(Solver s) {
+  switch (s) {
+    case Solver::newton: return "Newton";
+    case Solver::cg: return "CG";
+    case Solver::pgs: return "PGS";
+  }
+  return "Newton";
+}
+
+// The ground decides about friction: with equal priority MuJoCo takes the larger of a pair's.
+std::string contact_attributes(const WorldDescription& world) {
+  const PhysicsSettings& p = world.physics;
+  return fmt::format(
+      "priority=\"1\" condim=\"3\" friction=\"{:.17g} 0 0\" solref=\"{:.17g} {:.17g}\" "
+      "solimp=\"{:.17g} {:.17g} {:.17g}\"",
+      world.friction, p.solref[0], p.solref[1], p.solimp[0], p.solimp[1], p.solimp[2]);
+}
+
+std::string terrain_xml(const WorldDescription& world) {
+  std::string xml;
+  int index = 0;
+  for (const TerrainBox& box : world.terrain) {
+    xml += fmt::format(
+        "<geom name=\"terrain_{}\" type=\"box\" pos=\"{:.17g} {:.17g} {:.17g}\" "
+        "size=\"{:.17g} {:.17g} {:.17g}\" rgba=\".62 .6 .55 1\" {}/>\n",
+        index++, box.at[0], box.at[1], 0.5 * box.size[2], 0.5 * box.size[0], 0.5 * box.size[1],
+        0.5 * box.size[2], contact_attributes(world));
+  }
+  return xml;
+}
+
+}  // namespace
+
+std::string scene_xml(const model::RobotDescription& robot, const WorldDescription& world,
+                      bool with_visuals) {
+  const PhysicsSettings& p = world.physics;
+  const double timestep = robot.period_s() / p.steps_per_tick;
+  std::string xml = "<mujoco model=\"footfall\">\n";
+  if (!with_visuals) xml += "<compiler discardvisual=\"true\"/>\n";
+  xml += fmt::format(
+      "<option timestep=\"{:.17g}\" integrator=\"{}\" solver=\"{}\" cone=\"{}\" "
+      "impratio=\"{:.17g}\" iterations=\"{}\" tolerance=\"{:.17g}\"/>\n",
+      timestep, integrator_name(p.integrator), solver_name(p.solver),
+      p.cone == Cone::elliptic ? "elliptic" : "pyramidal", p.impratio, p.iterations, p.tolerance);
+  xml += fmt::format("<include file=\"{}\"/>\n", robot.model_path);
+  if (with_visuals) {
+    xml +=
+        "<visual><headlight ambient=\".45 .45 .45\" diffuse=\".45 .45 .45\" specular=\".1 .1 .1\"/>"
+        "<map znear=\".02\"/></visual>\n"
+        "<asset><texture name=\"sky\" type=\"skybox\" builtin=\"gradient\" rgb1=\".86 .90 .95\" "
+        "rgb2=\".55 .65 .78\" width=\"64\" height=\"384\"/>"
+        "<texture name=\"floor\" type=\"2d\" builtin=\"checker\" rgb1=\".80 .81 .83\" "
+        "rgb2=\".70 .72 .75\" width=\"256\" height=\"256\"/>"
+        "<material name=\"floor\" texture=\"floor\" texrepeat=\"2 2\" texuniform=\"true\" "
+        "reflectance=\".05\"/></asset>\n";
+  }
+  xml += "<worldbody>\n";
+  if (with_visuals) xml += "<light pos=\"1 -2 4\" dir=\"-.25 .45 -.85\" diffuse=\".5 .5 .5\"/>\n";
+  xml += fmt::format("<geom name=\"ground\" type=\"plane\" size=\"0 0 .5\" {} {}/>\n",
+                     contact_attributes(world), with_visuals ? "material=\"floor\"" : "");
+  xml += terrain_xml(world);
+  xml += "</worldbody>\n</mujoco>\n";
+  return xml;
+}
+
+}  // namespace footfall::sim

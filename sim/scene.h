@@ -1,0 +1,16 @@
+// The simulated world as one MJCF text: the robot's file, the ground, terrain, physics settings.
+#pragma once
+
+#include <string>
+
+#include "model/robot_description.h"
+#include "sim/world_description.h"
+
+namespace footfall::sim {
+
+// A whole MJCF document. `with_visuals` keeps shapes that are only seen (film, viewer); physics
+// leaves them out, they cost two thirds of a step.
+std::string scene_xml(const model::RobotDescription& robot, const WorldDescription& world,
+                      bool with_visuals);
+
+}  // namespace footfall::sim

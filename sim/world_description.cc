@@ -1,0 +1,329 @@
+// Reads a `world: 1` file into a WorldDescription and checks it; see world_description.h.
+#include "sim/world_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "core/value_reader.h"
+
+namespace footfall::sim {
+
+namespace {
+
+using core::Diagnostics;
+using core::YamlEntry;
+using core::YamlNode;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// One section of the file a function; each reports what is wrong in it and the rest goes on.
+class WorldLoader {
+ public:
+  WorldLoader(const std::string& path, Diagnostics& diagnostics) : diagnostics_(diagnostics) {
+    world_.path = path;
+  }
+
+  WorldDescription load() {
+    const YamlNode root = core::load_yaml_with_base(world_.path, diagnostics_);
+    if (!core::check_kind(root, "world", 1, diagnostics_)) return std::move(world_);
+    core::check_keys(root,
+                     {"world", "name", "doc", "ground", "surface", "actuators", "sensors",
+                      "control_model", "constraints", "planner_latency", "physics"},
+                     diagnostics_);
+    read_head(root);
+    if (const YamlNode* node = root.find("ground")) read_ground(*node);
+    if (const YamlNode* node = root.find("surface")) read_surface(*node);
+    if (const YamlNode* node = root.find("actuators")) read_actuators(*node);
+    if (const YamlNode* node = root.find("sensors")) read_sensors(*node);
+    if (const YamlNode* node = root.find("control_model")) read_control_model(*node);
+    if (const YamlNode* node = root.find("constraints")) read_constraints(*node);
+    if (const YamlNode* node = root.find("physics")) read_physics(*node);
+    return std::move(world_);
+  }
+
+ private:
+  void read_head(const YamlNode& root) {
+    world_.name = std::filesystem::path(world_.path).stem().string();
+    if (const YamlNode* node = root.find("name")) {
+      world_.name = core::read_name(*node, diagnostics_, "the world's name").value_or(world_.name);
+    }
+    if (const YamlNode* node = root.find("doc")) {
+      world_.doc = core::read_text(*node, diagnostics_).value_or("");
+    }
+    read_bounded(root, "planner_latency", core::kTime, 0.0, kInfinity, world_.planner_latency);
+  }
+
+  void read_bounded(const YamlNode& map, std::string_view key, core::Dimension dimension,
+                    double minimum, double maximum, double& out, std::string_view what = {}) {
+    const YamlNode* const node = map.find(key);
+    if (node == nullptr) return;
+    out = core::read_bounded(*node, dimension, minimum, maximum, diagnostics_, what).value_or(out);
+  }
+
+  void read_ground(const YamlNode& node) {
+    if (!core::expect_map(node, "{friction: NUMBER, terrain: [...]}", diagnostics_)) return;
+    core::check_keys(node, {"friction", "terrain"}, diagnostics_);
+    constexpr double kLargestFriction = 10.0;
+    read_bounded(node, "friction", core::kNone, 0.0, kLargestFriction, world_.friction);
+    const YamlNode* const terrain = node.find("terrain");
+    if (terrain == nullptr ||
+        !core::expect_sequence(*terrain, "a list of terrain pieces", diagnostics_)) {
+      return;
+    }
+    for (const YamlNode& piece : terrain->items) {
+      if (!core::expect_map(piece, "a terrain piece: {box: {at: [X, Y], size: [X, Y, Z]}}",
+                            diagnostics_)) {
+        continue;
+      }
+      core::check_keys(piece, {"box"}, diagnostics_);
+      if (const YamlNode* box = core::require_key(piece, "box", diagnostics_)) read_box(*box);
+    }
+  }
+
+  void read_box(const YamlNode& node) {
+    if (!core::expect_map(node, "a box: {at: [X, Y], size: [X, Y, Z]}", diagnostics_)) return;
+    core::check_keys(node, {"at", "size"}, diagnostics_);
+    TerrainBox box;
+    box.mark = node.mark;
+    if (const YamlNode* at = core::require_key(node, "at", diagnostics_)) {
+      const auto values = core::read_vector(*at, core::kLength, {"x", "y"}, diagnostics_);
+      if (values) std::copy(values->begin(), values->end(), box.at.begin());
+    }
+    if (const YamlNode* size = core::require_key(node, "size", diagnostics_)) {
+      const auto values = core::read_vector3(*size, core::kLength, diagnostics_);
+      box.size = values.value_or(box.size);
+      const auto good = [](double length) { return length > 0.0; };
+      if (values && !std::all_of(values->begin(), values->end(), good)) {
+        diagnostics_.error(size->mark, "out-of-range", "expected lengths above zero for a box");
+      }
+    }
+    world_.terrain.push_back(box);
+  }
+
+  void read_surface(const YamlNode& node) {
+    world_.surface_mark = node.mark;
+    if (!core::expect_map(node, "{ramps: [{from: X, to: X, rise: Z}, ...]}", diagnostics_)) return;
+    core::check_keys(node, {"ramps"}, diagnostics_);
+    const YamlNode* const ramps = core::require_key(node, "ramps", diagnostics_);
+    if (ramps == nullptr || !core::expect_sequence(*ramps, "a list of ramps", diagnostics_)) return;
+    for (const YamlNode& item : ramps->items) {
+      if (!core::expect_map(item, "a ramp: {from: X, to: X, rise: Z}", diagnostics_)) continue;
+      core::check_keys(item, {"from", "to", "rise"}, diagnostics_);
+      SurfaceRamp ramp;
+      ramp.mark = item.mark;
+      bool good = true;
+      const auto read = [&](std::string_view key, double& out) {
+        good = core::require_key(item, key, diagnostics_) != nullptr &&
+               core::read_quantity(item, key, core::kLength, out, diagnostics_) && good;
+      };
+      read("from", ramp.from);
+      read("to", ramp.to);
+      read("rise", ramp.rise);
+      if (good && ramp.to <= ramp.from) {
+        diagnostics_.error(item.mark, "range", "expected 'from' before 'to' in a ramp");
+      }
+      world_.surface.push_back(ramp);
+    }
+  }
+
+  void read_actuators(const YamlNode& node) {
+    ActuatorSettings& actuators = world_.actuators;
+    actuators.mark = node.mark;
+    if (!core::expect_map(node, "{model: ideal}", diagnostics_)) return;
+    core::check_keys(node, {"model", "command_delay", "coulomb"}, diagnostics_);
+    if (const YamlNode* model = node.find("model")) {
+      actuators.mark = model->mark;
+      const auto choice =
+          core::read_choice(*model, {"ideal", "series_elastic"}, diagnostics_, "an actuator model");
+      if (choice) actuators.model = static_cast<ActuatorModel>(*choice);
+    }
+    constexpr double kLongestDelay = 1.0;
+    read_bounded(node, "command_delay", core::kTime, 0.0, kLongestDelay, actuators.command_delay);
+    read_bounded(node, "coulomb", core::kTorque, 0.0, kInfinity, actuators.coulomb);
+    if (const YamlNode* coulomb = node.find("coulomb")) actuators.coulomb_mark = coulomb->mark;
+  }
+
+  void read_sensors(const YamlNode& node) {
+    if (!core::expect_map(node, "a map of sensors", diagnostics_)) return;
+    core::check_keys(node, {"joint", "gyro", "mocap", "switch"}, diagnostics_);
+    SensorSettings& sensors = world_.sensors;
+    struct Key {
+      std::string name;
+      core::Dimension dimension;
+      double maximum;
+      double* out;
+      std::string_view what = {};
+    };
+    const auto section = [&](const std::string& name, const std::vector<Key>& keys) {
+      const YamlNode* const map = node.find(name);
+      if (map == nullptr) return;
+      if (!core::expect_map(*map, fmt::format("a map of the {} sensor's imperfections", name),
+                            diagnostics_)) {
+        return;
+      }
+      std::vector<std::string> known;
+      for (const Key& key : keys) known.push_back(key.name);
+      core::check_keys(*map, known, diagnostics_);
+      for (const Key& key : keys) {
+        read_bounded(*map, key.name, key.dimension, 0.0, key.maximum, *key.out, key.what);
+        if (const YamlNode* value = map->find(key.name)) {
+          sensors.marks.emplace_back(name + "." + key.name, value->mark);
+        }
+      }
+    };
+    constexpr double kAny = kInfinity;
+    section("joint", {{"resolution", core::kNone, kAny, &sensors.joint_resolution, "an angle"}});
+    section("gyro", {{"noise", core::kRate, kAny, &sensors.gyro_noise, "an angular velocity"},
+                     {"bias", core::kRate, kAny, &sensors.gyro_bias, "an angular velocity"}});
+    section("mocap", {{"rate", core::kRate, kAny, &sensors.mocap_rate, "a rate in Hz"},
+                      {"delay", core::kTime, kAny, &sensors.mocap_delay},
+                      {"noise", core::kLength, kAny, &sensors.mocap_noise},
+                      {"occlusion", core::kNone, 1.0, &sensors.mocap_occlusion}});
+    section("switch", {{"delay", core::kTime, kAny, &sensors.switch_delay},
+                       {"threshold", core::kForce, kAny, &sensors.switch_threshold}});
+  }
+
+  void read_control_model(const YamlNode& node) {
+    if (!core::expect_map(node, "{mass: \"+5 %\", com: {LINK: [X, Y, Z]}}", diagnostics_)) return;
+    core::check_keys(node, {"mass", "com"}, diagnostics_);
+    if (const YamlNode* mass = node.find("mass")) read_mass(*mass);
+    const YamlNode* const com = node.find("com");
+    if (com == nullptr || !core::expect_map(*com, "a map by link", diagnostics_)) return;
+    for (const YamlEntry& entry : com->entries) {
+      const auto shift = core::read_vector3(entry.value, core::kLength, diagnostics_);
+      if (shift) world_.control_model.com_shift[entry.key] = *shift;
+    }
+  }
+
+  void read_mass(const YamlNode& node) {
+    constexpr double kMostLighter = -0.9;
+    constexpr double kMostHeavier = 9.0;
+    const auto change = core::read_bounded(node, core::kNone, kMostLighter, kMostHeavier,
+                                           diagnostics_, "a change such as \"+5 %\"");
+    if (!change) return;
+    // "105 %" might mean either: a change has a sign.
+    const std::size_t first = node.scalar.find_first_not_of(" \t");
+    const bool has_sign = node.scalar[first] == '+' || node.scalar[first] == '-';
+    if (!has_sign && *change != 0.0) {
+      core::report_expected(node, "a change with its sign, such as \"+5 %\"", diagnostics_);
+      return;
+    }
+    world_.control_model.mass_scale = 1.0 + *change;
+  }
+
+  void read_constraints(const YamlNode& node) {
+    if (!core::expect_sequence(node, "a list of names", diagnostics_)) return;
+    for (const YamlNode& item : node.items) {
+      const auto name = core::read_name(item, diagnostics_, "an external aid's name");
+      if (name) world_.constraints.push_back({*name, item.mark});
+    }
+  }
+
+  void read_physics(const YamlNode& node) {
+    if (!core::expect_map(node, "a map of physics settings", diagnostics_)) return;
+    core::check_keys(node,
+                     {"timestep_divisor", "integrator", "solver", "cone", "impratio", "iterations",
+                      "tolerance", "solref", "solimp"},
+                     diagnostics_);
+    PhysicsSettings& physics = world_.physics;
+    read_integer(node, "timestep_divisor", 1000, physics.steps_per_tick);
+    read_choice(node, "integrator", {"euler", "rk4", "implicit"}, physics.integrator);
+    read_choice(node, "solver", {"newton", "cg", "pgs"}, physics.solver);
+    read_choice(node, "cone", {"elliptic", "pyramidal"}, physics.cone);
+    read_bounded(node, "impratio", core::kNone, 1e-3, 1e6, physics.impratio);
+    read_integer(node, "iterations", 100'000, physics.iterations);
+    read_bounded(node, "tolerance", core::kNone, 0.0, 1.0, physics.tolerance);
+    if (const YamlNode* solref = node.find("solref")) read_solref(*solref);
+    if (const YamlNode* solimp = node.find("solimp")) read_solimp(*solimp);
+  }
+
+  void read_integer(const YamlNode& map, std::string_view key, int maximum, int& out) {
+    const YamlNode* const node = map.find(key);
+    if (node == nullptr) return;
+    out = static_cast<int>(core::read_integer(*node, 1, maximum, diagnostics_).value_or(out));
+  }
+
+  template <typename Enum>
+  void read_choice(const YamlNode& map, std::string_view key,
+                   const std::vector<std::string>& choices, Enum& out) {
+    const YamlNode* const node = map.find(key);
+    if (node == nullptr) return;
+    if (const auto choice = core::read_choice(*node, choices, diagnostics_)) {
+      out = static_cast<Enum>(*choice);
+    }
+  }
+
+  // Its two values have different dimensions: a time constant and a ratio.
+  void read_solref(const YamlNode& node) {
+    if (!node.is_sequence() || node.items.size() != 2) {
+      core::report_expected(node, "[TIME CONSTANT, DAMPING RATIO]", diagnostics_);
+      return;
+    }
+    std::array<double, 2>& solref = world_.physics.solref;
+    constexpr double kLeast = 1e-6;
+    solref[0] = core::read_bounded(node.items[0], core::kTime, kLeast, 10.0, diagnostics_)
+                    .value_or(solref[0]);
+    solref[1] = core::read_bounded(node.items[1], core::kNone, kLeast, 100.0, diagnostics_)
+                    .value_or(solref[1]);
+  }
+
+  void read_solimp(const YamlNode& node) {
+    if (!node.is_sequence() || node.items.size() != 3) {
+      core::report_expected(node, "[IMPEDANCE AT 0, IMPEDANCE AT WIDTH, WIDTH]", diagnostics_);
+      return;
+    }
+    std::array<double, 3>& solimp = world_.physics.solimp;
+    for (std::size_t i = 0; i < 2; ++i) {
+      solimp[i] = core::read_bounded(node.items[i], core::kNone, 1e-4, 0.9999, diagnostics_)
+                      .value_or(solimp[i]);
+    }
+    solimp[2] = core::read_bounded(node.items[2], core::kLength, 0.0, 1.0, diagnostics_)
+                    .value_or(solimp[2]);
+  }
+
+  Diagnostics& diagnostics_;
+  WorldDescription world_;
+};
+
+}  // namespace
+
+WorldDescription load_world(const std::string& path, Diagnostics& diagnostics) {
+  return WorldLoader(path, diagnostics).load();
+}
+
+void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
+  const auto refuse = [&diagnostics](core::Mark mark, std::string_view what) {
+    diagnostics.error(mark, "unsupported",
+                      fmt::format("the simulator does not support {} yet", what));
+  };
+  if (!world.surface.empty()) refuse(world.surface_mark, "a CoM height surface");
+  if (world.actuators.model == ActuatorModel::series_elastic) {
+    refuse(world.actuators.mark, "series-elastic actuators (use 'model: ideal')");
+  }
+  if (world.actuators.coulomb > 0.0) refuse(world.actuators.coulomb_mark, "joint friction");
+  for (const auto& [name, mark] : world.sensors.marks) {
+    refuse(mark, fmt::format("sensor imperfections ('{}')", name));
+  }
+  for (const ConstraintName& constraint : world.constraints) {
+    refuse(constraint.mark, fmt::format("the external aid '{}'", constraint.name));
+  }
+}
+
+std::string find_world_file(const std::string& name, const std::vector<std::string>& search) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (name.empty()) return {};
+  if (fs::is_regular_file(name, error)) return name;
+  for (const std::string& folder : search) {
+    const fs::path path = fs::path(folder) / "sim" / "worlds" / (name + ".yaml");
+    if (fs::is_regular_file(path, error)) return path.string();
+  }
+  return {};
+}
+
+}  // namespace footfall::sim

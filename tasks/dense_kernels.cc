@@ -1,0 +1,202 @@
+// Householder kernels; see dense_kernels.h.
+#include "tasks/dense_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace footfall::tasks {
+namespace {
+
+// x -= beta v (vᵀ x) on rows [first, last) and columns [c0, c1); v[0] belongs to row `first`.
+void reflect(const Block& x, int first, int last, int c0, int c1, const double* v, double beta,
+             double* __restrict work) noexcept {
+  const int n = c1 - c0;
+  if (n <= 0) return;
+  {
+    const double v0 = v[0];
+    const double* __restrict xr = x.row(first) + c0;
+    for (int c = 0; c < n; ++c) work[c] = v0 * xr[c];
+  }
+  for (int r = first + 1; r < last; ++r) {
+    const double vr = v[r - first];
+    const double* __restrict xr = x.row(r) + c0;
+    for (int c = 0; c < n; ++c) work[c] += vr * xr[c];
+  }
+  for (int r = first; r < last; ++r) {
+    const double s = beta * v[r - first];
+    double* __restrict xr = x.row(r) + c0;
+    for (int c = 0; c < n; ++c) xr[c] -= s * work[c];
+  }
+}
+
+// Makes the reflector of column c over rows [first, last): v (v[0] at row first) and beta; writes
+// the resulting column (alpha, 0, ...). Returns |alpha|.
+double make_reflector(const Block& x, int first, int last, int c, double* v, double* beta) noexcept {
+  double norm2 = 0.0;
+  for (int r = first; r < last; ++r) {
+    v[r - first] = x.row(r)[c];
+    norm2 += v[r - first] * v[r - first];
+  }
+  const double norm = std::sqrt(norm2);
+  const double alpha = v[0] > 0.0 ? -norm : norm;
+  const double vtv = 2.0 * (norm2 - alpha * v[0]);
+  v[0] -= alpha;
+  *beta = vtv > 0.0 ? 2.0 / vtv : 0.0;
+  x.row(first)[c] = alpha;
+  for (int r = first + 1; r < last; ++r) x.row(r)[c] = 0.0;
+  return norm;
+}
+
+void swap_columns(const Block& x, int rows, int a, int b) noexcept {
+  for (int r = 0; r < rows; ++r) std::swap(x.row(r)[a], x.row(r)[b]);
+}
+
+// The column with the largest remaining norm among those that pass the rank rule; -1: none does.
+int choose_pivot(const Block& x, int first, const QrRange& range, const RankRule& rule,
+                 const double* norm2, int next, double* __restrict remaining) noexcept {
+  const int n = range.col_last - next;
+  std::fill_n(remaining, n, 0.0);
+  for (int r = first; r < range.row_last; ++r) {
+    const double* __restrict xr = x.row(r) + next;
+    for (int c = 0; c < n; ++c) remaining[c] += xr[c] * xr[c];
+  }
+  int best = -1;
+  double best_norm = 0.0;
+  for (int c = 0; c < n; ++c) {
+    const double limit =
+        std::max(rule.tolerance * rule.tolerance * norm2[next + c], rule.floor * rule.floor);
+    if (remaining[c] > limit && remaining[c] > best_norm) {
+      best = next + c;
+      best_norm = remaining[c];
+    }
+  }
+  return best;
+}
+
+void reflect_vector(const Reflectors& h, int i, int dims, double* x) noexcept {
+  const double* v = h.v + i * h.stride;
+  double s = 0.0;
+  for (int q = i; q < dims; ++q) s += v[q - i] * x[q];
+  s *= h.beta[i];
+  for (int q = i; q < dims; ++q) x[q] -= s * v[q - i];
+}
+
+}  // namespace
+
+void rotate(const Reflectors& h, int dims, double* x) noexcept {
+  for (int i = 0; i < h.count; ++i) reflect_vector(h, i, dims, x);
+}
+
+void rotate_back(const Reflectors& h, int dims, double* x) noexcept {
+  for (int i = h.count - 1; i >= 0; --i) reflect_vector(h, i, dims, x);
+}
+
+int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* order,
+               double* norm2, Reflectors* keep, double* condition, double* work) noexcept {
+  const int columns = range.col_last - range.col_first;
+  const int most = std::min(columns, range.row_last - range.row_first);
+  double largest = 0.0;
+  double smallest = 0.0;
+  int rank = 0;
+  for (; rank < most; ++rank) {
+    const int first = range.row_first + rank;
+    const int c = range.col_first + rank;
+    const int pivot = choose_pivot(x, first, range, rule, norm2, c, work);
+    if (pivot < 0) break;
+    if (pivot != c) {
+      swap_columns(x, range.swap_rows, c, pivot);
+      std::swap(order[c], order[pivot]);
+      std::swap(norm2[c], norm2[pivot]);
+    }
+    double local_v[1 + 6 + 64];
+    double local_beta = 0.0;
+    double* v = keep ? keep->v + keep->count * keep->stride : local_v;
+    double* beta = keep ? keep->beta + keep->count : &local_beta;
+    const double size = make_reflector(x, first, range.row_last, c, v, beta);
+    if (keep) ++keep->count;
+    reflect(x, first, range.row_last, c + 1, range.col_end, v, *beta, work);
+    largest = std::max(largest, size);
+    smallest = rank == 0 ? size : std::min(smallest, size);
+  }
+  // What the rank rule rejected is round-off or close to it: it must not feed later levels.
+  for (int r = range.row_first + rank; r < range.row_last; ++r) {
+    std::fill(x.row(r) + range.col_first + rank, x.row(r) + range.col_last, 0.0);
+  }
+  if (condition) *condition = rank > 0 ? largest / smallest : 1.0;
+  return rank;
+}
+
+int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule& rule, int* order,
+                        double* norm2, const double* rhs, const double* weight, double* z,
+                        Reflectors* keep, double* condition, const LevelScratch& scratch) noexcept {
+  const int m = level.col_last - level.col_first;
+  const int row_first = level.row0 + level.done;
+  const QrRange range = {row_first,       level.row0 + level.dims, level.col_first,
+                         level.col_last,  level.col_end,           level.swap_rows};
+  const int k = pivoted_qr(x, range, rule, order, norm2, keep, condition, scratch.work);
+  for (int i = 0; i < m; ++i) {
+    const int c = level.col_first + i;
+    double value = rhs[order[c]];
+    for (int q = 0; q < level.done; ++q) value -= x.row(level.row0 + q)[c] * z[q];
+    scratch.rhs[i] = value;
+  }
+  double* y = z + level.done;
+  if (k == m) {  // R11ᵀ y = rhs
+    for (int i = 0; i < m; ++i) {
+      double value = scratch.rhs[i];
+      for (int q = 0; q < i; ++q) value -= x.row(row_first + q)[level.col_first + i] * y[q];
+      y[i] = value / x.row(row_first + i)[level.col_first + i];
+    }
+    return k;
+  }
+  if (k == 0) return 0;
+  const Block dense = {scratch.dense, k + 1};
+  for (int i = 0; i < m; ++i) {
+    const int c = level.col_first + i;
+    const double w = std::sqrt(weight[order[c]]);
+    for (int q = 0; q < k; ++q) dense.row(i)[q] = w * x.row(row_first + q)[c];
+    dense.row(i)[k] = w * scratch.rhs[i];
+  }
+  least_squares(dense, m, k, y, scratch.work);
+  return k;
+}
+
+void least_squares(const Block& m, int rows, int cols, double* y, double* work) noexcept {
+  double* v = work;
+  double* w = work + rows;
+  for (int c = 0; c < cols; ++c) {
+    double beta = 0.0;
+    make_reflector(m, c, rows, c, v, &beta);
+    reflect(m, c, rows, c + 1, cols + 1, v, beta, w);
+  }
+  for (int i = cols - 1; i >= 0; --i) {
+    double value = m.row(i)[cols];
+    for (int q = i + 1; q < cols; ++q) value -= m.row(i)[q] * y[q];
+    y[i] = value / m.row(i)[i];
+  }
+}
+
+void orthogonal_factor(const Block& m, int rows, int cols, double* V, double* work) noexcept {
+  const Block q = {V, rows};
+  for (int r = 0; r < rows; ++r) {
+    std::fill_n(q.row(r), rows, 0.0);
+    q.row(r)[r] = 1.0;
+  }
+  double* v = work;
+  double* w = work + rows;
+  for (int c = 0; c < cols; ++c) {
+    double beta = 0.0;
+    make_reflector(m, c, rows, c, v, &beta);
+    reflect(m, c, rows, c + 1, cols, v, beta, w);
+    // V <- V H, row by row.
+    for (int r = 0; r < rows; ++r) {
+      double s = 0.0;
+      for (int k = c; k < rows; ++k) s += q.row(r)[k] * v[k - c];
+      s *= beta;
+      for (int k = c; k < rows; ++k) q.row(r)[k] -= s * v[k - c];
+    }
+  }
+}
+
+}  // namespace footfall::tasks

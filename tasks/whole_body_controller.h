@@ -1,0 +1,90 @@
+// From the machine's active control to joint torques: assembles the algebra for each control law in
+// force, blends the two laws of a contact transition, and reports what every task got.
+//
+// Contact transitions ([Kim16] III-D, eqs (1)-(2)) have two forms:
+//  - continuous: both controllers at every tick on the same state and references,
+//      τ = (1 - w) τ_primary + w τ_other. Exact at both ends: w = 1 is the other controller, w = 0
+//      this one. It equals the corrected eq. (2) (docs/notation.md E8) whenever both controllers ask
+//      for the same task accelerations, and stays exact when they do not.
+//  - frozen: the paper's. The moving foot's force f is taken from `other` once, at entry, and
+//      enters the primary law as a known force w f: τ = τ_primary(h - w J_swᵀ f).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/control_model.h"
+#include "tasks/active_set.h"
+#include "tasks/task_law.h"
+#include "tasks/wbosc.h"
+
+namespace footfall::tasks {
+
+struct ControllerSizes {
+  int task_instances = 1;
+  int task_rows = 32;     // most rows of one control law
+  int levels = 8;
+  int contacts = 4;
+};
+
+struct TaskReport {
+  int rank = 0;            // of the task's level
+  double condition = 1.0;  // of the task's level
+  double authority = 1.0;  // rank of the level over its rows
+};
+
+// Valid until the next compute().
+struct ControllerResult {
+  std::array<double, core::kMaxJoints> tau{};                        // N m, after limits
+  std::array<std::array<double, 3>, core::kMaxContacts> force{};     // N, ground on robot, per robot contact
+  std::array<AxisEvaluation, core::kMaxAxes> axes{};                 // as primary.axes
+  std::array<double, core::kMaxAxes> achieved{};                     // as primary.axes; primary law alone
+  std::array<TaskReport, core::kMaxTasks> tasks{};                   // as primary.tasks
+  std::array<double, core::kMaxInternal> internal{};                 // N, mean convention, as primary.internals, predicted
+  std::array<double, core::kMaxInternal> internal_measured{};        // N, from measured joint torque
+  bool limited = false;
+  bool finite = true;
+};
+
+class WholeBodyController {
+ public:
+  WholeBodyController(const model::ControlModel& model, const std::vector<double>& torque_limits,
+                      const ControllerSizes& sizes, double period);
+
+  // tau_measured: joint torques measured now (internal force feedback). Allocates nothing.
+  void compute(const ActiveControl& control, std::int64_t tick,
+               const double* tau_measured) noexcept;
+
+  const ControllerResult& result() const noexcept { return result_; }
+  // Torques of the two laws alone at the last tick (transition tests and logs).
+  const double* tau_primary() const noexcept { return primary_.solution().tau.data(); }
+  const double* tau_other() const noexcept { return other_.solution().tau.data(); }
+  const Wbosc& primary() const noexcept { return primary_; }
+
+ private:
+  void solve_law(Wbosc& solver, const ControlSet& set, std::int64_t tick, const double* tau_measured,
+                 AxisEvaluation* axes) noexcept;
+  void assemble_contacts(WboscProblem& problem, const ControlSet& set) const noexcept;
+  void assemble_tasks(WboscProblem& problem, const ControlSet& set, std::int64_t tick,
+                      AxisEvaluation* axes) noexcept;
+  void assemble_internal(WboscProblem& problem, const ControlSet& set) const noexcept;
+  void tension_row(WboscProblem& problem, const ControlSet& set, int row, int a, int b) const noexcept;
+  void sample_frozen_force(const ActiveControl& control) noexcept;
+  void add_frozen_force(const ActiveControl& control) noexcept;
+  void report(const ActiveControl& control) noexcept;
+
+  const model::ControlModel& model_;
+  std::vector<double> torque_limits_;
+  std::vector<int> actuated_;
+  double period_;
+  ControllerSizes sizes_;
+  TaskMemory memory_;
+  Wbosc primary_;
+  Wbosc other_;
+  std::array<AxisEvaluation, core::kMaxAxes> other_axes_{};
+  std::array<std::array<double, 3>, core::kMaxContacts> frozen_force_{};
+  ControllerResult result_;
+};
+
+}  // namespace footfall::tasks

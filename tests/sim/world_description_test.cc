@@ -1,0 +1,184 @@
+// World files: a whole one, the default, each mistake at its place, and nothing ignored in silence.
+#include "sim/world_description.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+namespace footfall::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+constexpr std::string_view kWorld = R"(world: 1
+name: lab
+doc: "All that a world can say."
+ground: {friction: 0.7, terrain: [{box: {at: [0.8 m, 0 m], size: [0.6 m, 1.5 m, 7 cm]}}]}
+surface: {ramps: [{from: 0.1 m, to: 0.5 m, rise: 7 cm}, {from: 1.1 m, to: 1.5 m, rise: -7 cm}]}
+actuators: {model: series_elastic, command_delay: 667 us, coulomb: 1 Nm}
+sensors:
+  joint: {resolution: 3.8e-4 rad}
+  gyro: {noise: 0.01 rad/s, bias: 0.25 deg/s}
+  mocap: {rate: 480 Hz, delay: 5 ms, noise: 1 mm, occlusion: 5 %}
+  switch: {delay: 2 ms, threshold: 20 N}
+control_model: {mass: "+5 %", com: {torso: [1 cm, 0 m, 0 m]}}
+constraints: [planarizer]
+planner_latency: 5 ms
+physics:
+  {timestep_divisor: 4, integrator: implicit, solver: pgs, cone: pyramidal, impratio: 1,
+   iterations: 50, tolerance: 1e-6, solref: [10 ms, 1], solimp: [0.9, 0.95, 1 mm]}
+)";
+
+class WorldDescriptionTest : public testing::Test {
+ protected:
+  WorldDescriptionTest()
+      : folder_(std::filesystem::path(testing::TempDir()) /
+                testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~WorldDescriptionTest() override { std::filesystem::remove_all(folder_); }
+
+  WorldDescription load(std::string_view text) {
+    std::ofstream(path()) << text;
+    diagnostics_ = {};
+    return load_world(path(), diagnostics_);
+  }
+  std::string path() const { return (folder_ / "lab.yaml").string(); }
+
+  // The problems so far, without the path before the line.
+  std::string problems() const {
+    std::string out = diagnostics_.to_string();
+    for (std::size_t i = out.find(path()); i != std::string::npos; i = out.find(path())) {
+      out.erase(i, path().size() + 1);
+    }
+    return out;
+  }
+  std::string problems_of(std::string_view text) {
+    load(text);
+    return problems();
+  }
+
+  std::filesystem::path folder_;
+  core::Diagnostics diagnostics_;
+};
+
+TEST_F(WorldDescriptionTest, AWholeFileIsRead) {
+  const WorldDescription world = load(kWorld);
+  ASSERT_EQ(diagnostics_.to_string(), "");
+  EXPECT_EQ(world.name, "lab");
+  EXPECT_EQ(world.friction, 0.7);
+  ASSERT_EQ(world.terrain.size(), 1u);
+  EXPECT_EQ(world.terrain[0].at, (std::array<double, 2>{0.8, 0.0}));
+  EXPECT_EQ(world.terrain[0].size, (std::array<double, 3>{0.6, 1.5, 0.07}));
+  ASSERT_EQ(world.surface.size(), 2u);
+  EXPECT_EQ(world.surface[1].rise, -0.07);
+  EXPECT_EQ(world.actuators.model, ActuatorModel::series_elastic);
+  EXPECT_DOUBLE_EQ(world.actuators.command_delay, 667e-6);
+  EXPECT_EQ(world.actuators.coulomb, 1.0);
+  EXPECT_EQ(world.sensors.joint_resolution, 3.8e-4);
+  EXPECT_DOUBLE_EQ(world.sensors.gyro_bias, 0.25 * kDegree);
+  EXPECT_EQ(world.sensors.mocap_rate, 480);
+  EXPECT_DOUBLE_EQ(world.sensors.mocap_occlusion, 0.05);
+  EXPECT_EQ(world.sensors.switch_threshold, 20);
+  EXPECT_DOUBLE_EQ(world.control_model.mass_scale, 1.05);
+  EXPECT_EQ(world.control_model.com_shift.at("torso"), (std::array<double, 3>{0.01, 0, 0}));
+  EXPECT_EQ(world.constraints[0].name, "planarizer");
+  EXPECT_DOUBLE_EQ(world.planner_latency, 5e-3);
+  EXPECT_EQ(world.physics.steps_per_tick, 4);
+  EXPECT_EQ(world.physics.integrator, Integrator::implicit);
+  EXPECT_EQ(world.physics.solver, Solver::pgs);
+  EXPECT_EQ(world.physics.cone, Cone::pyramidal);
+  EXPECT_EQ(world.physics.solref, (std::array<double, 2>{0.01, 1.0}));
+  EXPECT_EQ(world.physics.solimp, (std::array<double, 3>{0.9, 0.95, 0.001}));
+}
+
+TEST_F(WorldDescriptionTest, TheDefaultIsFlatAndIdeal) {
+  const WorldDescription world;
+  EXPECT_EQ(world.friction, 0.9);
+  EXPECT_TRUE(world.terrain.empty());
+  EXPECT_EQ(world.actuators.model, ActuatorModel::ideal);
+  EXPECT_EQ(world.actuators.command_delay, 0.0);
+  EXPECT_EQ(world.control_model.mass_scale, 1.0);
+  EXPECT_TRUE(world.constraints.empty());
+  EXPECT_EQ(world.physics.steps_per_tick, 2);
+  EXPECT_EQ(world.physics.integrator, Integrator::euler);
+  EXPECT_EQ(world.physics.solver, Solver::newton);
+  EXPECT_EQ(world.physics.cone, Cone::elliptic);
+  EXPECT_EQ(world.physics.impratio, 10.0);
+  check_supported(world, diagnostics_);
+  EXPECT_EQ(diagnostics_.to_string(), "");
+}
+
+TEST_F(WorldDescriptionTest, WhatTheSimulatorCannotDoIsRefusedAtItsPlace) {
+  const WorldDescription world = load(kWorld);
+  check_supported(world, diagnostics_);
+  EXPECT_EQ(
+      problems(),
+      "5:10: error: the simulator does not support a CoM height surface yet\n"
+      "6:20: error: the simulator does not support series-elastic actuators (use 'model: ideal') "
+      "yet\n"
+      "6:68: error: the simulator does not support joint friction yet\n"
+      "8:23: error: the simulator does not support sensor imperfections ('joint.resolution') yet\n"
+      "9:17: error: the simulator does not support sensor imperfections ('gyro.noise') yet\n"
+      "9:35: error: the simulator does not support sensor imperfections ('gyro.bias') yet\n"
+      "10:17: error: the simulator does not support sensor imperfections ('mocap.rate') yet\n"
+      "10:32: error: the simulator does not support sensor imperfections ('mocap.delay') yet\n"
+      "10:45: error: the simulator does not support sensor imperfections ('mocap.noise') yet\n"
+      "10:62: error: the simulator does not support sensor imperfections ('mocap.occlusion') yet\n"
+      "11:19: error: the simulator does not support sensor imperfections ('switch.delay') yet\n"
+      "11:36: error: the simulator does not support sensor imperfections ('switch.threshold') yet\n"
+      "13:15: error: the simulator does not support the external aid 'planarizer' yet\n");
+}
+
+TEST_F(WorldDescriptionTest, ADelayAndAWrongControlModelAreSupported) {
+  const WorldDescription world = load(
+      "world: 1\nactuators: {model: ideal, command_delay: 2 ms}\n"
+      "control_model: {mass: \"-10 %\"}\n");
+  check_supported(world, diagnostics_);
+  EXPECT_EQ(diagnostics_.to_string(), "");
+  EXPECT_EQ(world.name, "lab");  // the file's own
+  EXPECT_DOUBLE_EQ(world.control_model.mass_scale, 0.9);
+  EXPECT_DOUBLE_EQ(world.actuators.command_delay, 2e-3);
+}
+
+TEST_F(WorldDescriptionTest, MistakesAreErrorsAtTheirPlace) {
+  EXPECT_EQ(problems_of("robot: 1\n"),
+            "1:1: error: not a world file: expected 'world: 1' as the first key, got 'robot'\n");
+  EXPECT_EQ(problems_of("world: 1\nground: {fricton: 0.7}\n"),
+            "2:10: error: unknown key 'fricton' (did you mean 'friction'?)\n");
+  EXPECT_EQ(problems_of("world: 1\nground: {friction: -1}\n"),
+            "2:20: error: expected a plain number, 0 to 10, got '-1'\n");
+  EXPECT_EQ(problems_of("world: 1\nplanner_latency: 5 mm\n"),
+            "2:18: error: expected a time, got '5 mm'\n");
+  EXPECT_EQ(problems_of("world: 1\nplanner_latency: -5 ms\n"),
+            "2:18: error: expected a time, at least 0 s, got '-5 ms'\n");
+  EXPECT_EQ(problems_of("world: 1\nactuators: {model: perfect}\n"),
+            "2:20: error: expected an actuator model: ideal or series_elastic, got 'perfect'\n");
+  EXPECT_EQ(problems_of("world: 1\ncontrol_model: {mass: 105 %}\n"),
+            "2:23: error: expected a change with its sign, such as \"+5 %\", got '105 %'\n");
+  EXPECT_EQ(problems_of("world: 1\nground: {terrain: [{box: {at: [0, 0], size: [1, 0, 1]}}]}\n"),
+            "2:45: error: expected lengths above zero for a box\n");
+  EXPECT_EQ(problems_of("world: 1\nground: {terrain: [{ball: {}}]}\n"),
+            "2:20: error: the key 'box' is missing\n"
+            "2:21: error: unknown key 'ball', expected box\n");
+  EXPECT_EQ(problems_of("world: 1\nsurface: {ramps: [{from: 1 m, to: 0 m, rise: 1 cm}]}\n"),
+            "2:19: error: expected 'from' before 'to' in a ramp\n");
+  EXPECT_EQ(problems_of("world: 1\nphysics: {timestep_divisor: 0, solver: quick}\n"),
+            "2:29: error: expected a whole number from 1 to 1000, got '0'\n"
+            "2:40: error: expected newton, cg or pgs, got 'quick'\n");
+}
+
+TEST_F(WorldDescriptionTest, AWorldIsFoundByFileOrName) {
+  load(kWorld);
+  EXPECT_EQ(find_world_file(path(), {}), path());
+  const std::filesystem::path home = folder_ / "sim" / "worlds";
+  std::filesystem::create_directories(home);
+  std::ofstream(home / "ice.yaml") << kWorld;
+  EXPECT_EQ(find_world_file("ice", {"/nowhere", folder_.string()}), (home / "ice.yaml").string());
+  EXPECT_EQ(find_world_file("mars", {folder_.string()}), "");
+}
+
+}  // namespace
+}  // namespace footfall::sim

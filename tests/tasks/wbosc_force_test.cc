@@ -1,0 +1,146 @@
+// Internal forces: conventions, size and feedback.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+
+#include "tasks/wbosc.h"
+#include "tests/support/dense_solve.h"
+#include "tests/support/hume_problem.h"
+#include "tests/support/naive_wbosc.h"
+
+namespace footfall::tests {
+namespace {
+
+using Eigen::VectorXd;
+
+class WboscTension : public testing::Test {
+ protected:
+  void fill(const model::State& state, double tension) {
+    model_.update(state);
+    builder_.emplace(model_, solver_.problem());
+    fill_dual(*builder_, model_, random_, tension);
+  }
+  VectorXd force_of(const VectorXd& tau) {
+    const NaiveProblem p = dense_problem(model_, solver_.problem());
+    return dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau).f;
+  }
+  VectorXd tau() const { return Eigen::Map<const VectorXd>(solver_.solution().tau.data(), 6); }
+
+  model::RobotDescription robot_ = load_hume();
+  model::ControlModel model_{robot_};
+  tasks::Wbosc solver_{hume_sizes()};
+  Random random_{3};
+  std::optional<ProblemBuilder> builder_;
+};
+
+TEST_F(WboscTension, AHundredNewtonsAreAHundredAtEachFootPushingApart) {
+  fill(standing_state(robot_), 100.0);
+  // Symmetric and at rest; nothing asked for: no sideways acceleration, both feet carry the same.
+  for (double& u : solver_.problem().u) u = 0.0;
+  solver_.solve();
+  const VectorXd f = force_of(tau());
+  // The right foot stands at -y. The robot pushes it outwards (-y), so the ground pushes it back.
+  EXPECT_NEAR(f(1), 100.0, 0.02);
+  EXPECT_NEAR(f(4), -100.0, 0.02);
+  EXPECT_NEAR(f(2), 0.5 * model_.mass() * 9.81, 1.0);  // standing: the ground pushes up, F_r = -f
+  EXPECT_NEAR(f(5), 0.5 * model_.mass() * 9.81, 1.0);
+}
+
+TEST_F(WboscTension, TheMeanOfBothFeetIsWhatWasAskedForInAnyState) {
+  for (int i = 0; i < 50; ++i) {
+    const double wanted = random_.within(150.0);
+    fill(random_state(robot_, random_), wanted);
+    solver_.solve();
+    const VectorXd f = force_of(tau());
+    double apart = 0.0;
+    for (int c = 0; c < 6; ++c) apart += solver_.problem().W_int[static_cast<std::size_t>(c)] * f(c);
+    const double tolerance = 1e-9 * f.cwiseAbs().maxCoeff();
+    EXPECT_NEAR(apart, wanted, tolerance);
+    EXPECT_NEAR(solver_.solution().internal[0], apart, tolerance);
+  }
+}
+
+TEST_F(WboscTension, MeasuredTensionIsThatOfTheMeasuredTorque) {
+  fill(random_state(robot_, random_), 40.0);
+  const std::array<double, 6> measured = {3.0, -20.0, 40.0, -4.0, -15.0, 30.0};
+  solver_.problem().tau_measured = measured.data();
+  solver_.solve();
+  const VectorXd f = force_of(Eigen::Map<const VectorXd>(measured.data(), 6));
+  double apart = 0.0;
+  for (int c = 0; c < 6; ++c) apart += solver_.problem().W_int[static_cast<std::size_t>(c)] * f(c);
+  EXPECT_NEAR(solver_.solution().internal_measured[0], apart, 1e-9 * f.cwiseAbs().maxCoeff());
+}
+
+// F_cmd = F_ref + K_F (F_ref - F): an actuator error that alone makes F wrong by d leaves d/(1+K_F).
+TEST_F(WboscTension, FeedbackLeavesOneOverOnePlusItsGainOfTheError) {
+  const std::array<double, 6> actuator_error = {1.0, -2.0, 3.0, -1.0, 2.0, 4.0};
+  double error_without = 0.0;
+  fill(random_state(robot_, random_), 60.0);
+  for (const double gain : {0.0, 0.5, 2.0}) {
+    std::array<double, 6> measured{};
+    solver_.problem().tau_measured = measured.data();
+    solver_.problem().K_F[0] = gain;
+    for (int i = 0; i < 60; ++i) {  // an actuator with a lag, until it stands still
+      solver_.solve();
+      for (std::size_t j = 0; j < 6; ++j) {
+        const double reached = solver_.solution().tau[j] + actuator_error[j];
+        measured[j] += (reached - measured[j]) / (1.0 + gain);
+      }
+    }
+    solver_.solve();
+    const double error = 60.0 - solver_.solution().internal_measured[0];
+    if (gain == 0.0) error_without = error;
+    EXPECT_NEAR(error, error_without / (1.0 + gain), 1e-8);
+  }
+  EXPECT_GT(std::abs(error_without), 1.0);
+}
+
+TEST_F(WboscTension, TheCorrectedAppendixGivesTheSameTorqueWithFeedback) {
+  for (int i = 0; i < 50; ++i) {
+    fill(random_state(robot_, random_), 60.0);
+    std::array<double, 6> measured{};
+    for (double& t : measured) t = random_.within(40.0);
+    solver_.problem().tau_measured = measured.data();
+    solver_.problem().K_F[0] = 2.0;
+    solver_.solve();
+    const VectorXd expected = naive_wbosc(dense_problem(model_, solver_.problem())).tau;
+    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_F(WboscTension, OnOneFootThereIsNoTensionToControl) {
+  model_.update(random_state(robot_, random_));
+  builder_.emplace(model_, solver_.problem());
+  fill_single(*builder_, model_, random_);
+  solver_.solve();
+  const VectorXd before = tau();
+  std::array<double, 3> w = {0.0, 1.0, 0.0};
+  std::copy(w.begin(), w.end(), solver_.problem().W_int.begin());
+  solver_.problem().F_int[0] = 100.0;
+  solver_.problem().internal_rows = solver_.problem().named_internal_rows = 1;
+  solver_.solve();
+  EXPECT_LE((tau() - before).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// Three contacts: the named pair gets its force, the others come as near to theirs as they can.
+TEST_F(WboscTension, NamedTensionsComeBeforeTheOthers) {
+  tasks::Wbosc solver({12, 6, 9, 16, 4, 3});
+  model_.update(random_state(robot_, random_));
+  ProblemBuilder builder(model_, solver.problem());
+  for (const int point : {kRightFoot, kLeftFoot, 4}) builder.contact(point);
+  builder.tension(0, kRightFoot, 1, kLeftFoot, 80.0);
+  builder.tension(0, kRightFoot, 2, 4, 0.0);
+  builder.tension(1, kLeftFoot, 2, 4, 0.0);
+  solver.problem().named_internal_rows = 1;
+  solver.solve();
+  EXPECT_NEAR(solver.solution().internal[0], 80.0, 1e-7);
+  const NaiveProblem p = dense_problem(model_, solver.problem());
+  const Eigen::Map<const VectorXd> tau(solver.solution().tau.data(), 6);
+  const VectorXd qdd = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau).qdd;
+  const VectorXd still = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, VectorXd::Zero(6)).qdd;
+  EXPECT_LE((qdd - still).cwiseAbs().maxCoeff(), 1e-9 * still.cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+}  // namespace footfall::tests

@@ -1,0 +1,119 @@
+"""What the acceptance rows share: runs of `footfall` two at a time, runs of the benchmarks, and the closing line.
+
+A row is a small program: it measures, prints progress to stderr, then calls finish(), which prints `figure: ...` and
+exits 0 or 1. Anything that keeps it from measuring ends with an exception or with exit code 4.
+"""
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+BUILD = ROOT / "build" / "release"
+FOOTFALL = os.environ.get("FOOTFALL", str(BUILD / "apps" / "footfall"))
+BENCHES = Path(os.environ.get("FOOTFALL_BENCHES", BUILD / "tests" / "bench"))
+WANT = bool(os.environ.get("ACCEPTANCE_WANT"))  # also what only the wants need
+BALANCE = "behaviors/library/balance.yaml"  # Tables I and II
+BEST = "behaviors/library/balance_best.yaml"  # the tuned parameter set
+PROCESSES = 2
+
+
+def finish(figure, passed, want=None):
+    """Prints the row's figure, whether its want holds (None: not measured), and exits."""
+    print(f"figure: {figure}")
+    if want is not None:
+        print(f"want: {'yes' if want else 'no'}")
+    sys.exit(0 if passed else 1)
+
+
+def give_up(text):
+    print(f"figure: not measured: {text}")
+    sys.exit(4)
+
+
+def progress(text):
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K  {text}", end="", file=sys.stderr, flush=True)
+
+
+def progress_done():
+    if sys.stderr.isatty():
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
+def last_json(text):
+    """The object that ends `text`; everything before it is for people."""
+    lines = text.splitlines()
+    for i in range(len(lines) - 1, -1, -1):
+        if lines[i].startswith("{"):
+            try:
+                return json.loads("\n".join(lines[i:]))
+            except json.JSONDecodeError:
+                continue
+    raise ValueError("no JSON object at the end of the output")
+
+
+def run(behavior, *arguments, log=False, timeout=7200):
+    """One `footfall run ... --json`; returns its object. A fall is a result, bad input is not."""
+    command = [FOOTFALL, "run", behavior, "--json", "--quiet", *([] if log else ["--no-log"]), *map(str, arguments)]
+    done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=timeout)
+    if done.returncode not in (0, 1):
+        reason = (done.stderr.strip().splitlines() or ["no message"])[0]
+        raise RuntimeError(f"exit {done.returncode} from {' '.join(command)}: {reason}")
+    return last_json(done.stdout)
+
+
+def run_all(cases):
+    """Runs the cases, each (name, [behavior, arguments...]), two at a time; returns {name: object} in their order."""
+    results = {}
+    with ThreadPoolExecutor(PROCESSES) as pool:
+        futures = {pool.submit(run, *arguments): name for name, arguments in cases}
+        try:
+            for future in as_completed(futures):
+                results[futures[future]] = future.result()
+                progress(f"{len(results)} of {len(cases)} runs")
+        except Exception as problem:  # one case that cannot run makes the figure meaningless
+            pool.shutdown(wait=False, cancel_futures=True)
+            progress_done()
+            give_up(problem)
+    progress_done()
+    return {name: results[name] for name, _ in cases}
+
+
+def bench(name, *arguments, timeout=1800):
+    """Runs a program of tests/bench alone on the machine; returns its JSON object."""
+    program = BENCHES / name
+    if not program.exists():
+        give_up(f"{program} is not built")
+    done = subprocess.run([str(program), *arguments], cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, timeout=timeout)
+    if done.returncode not in (0, 1):
+        give_up(f"{name} ended with {done.returncode}: {done.stderr.strip()[-200:]}")
+    try:
+        return last_json(done.stdout)
+    except ValueError as problem:
+        give_up(f"{name}: {problem}")
+
+
+def pick(figures, *path):
+    """figures[path[0]][path[1]]..., or a clear end."""
+    for key in path:
+        if not isinstance(figures, dict) or figures.get(key) is None:
+            give_up(f"no '{'.'.join(path)}' in the figures")
+        figures = figures[key]
+    return figures
+
+
+def spread(values):
+    """`median / worst` of figures where less is better, and the count."""
+    return f"median {statistics.median(values):.3g}, worst {max(values):.3g} of {len(values)}"
+
+
+def scratch():
+    """A directory that is gone when the row ends."""
+    return tempfile.TemporaryDirectory(prefix="footfall-acceptance-")
