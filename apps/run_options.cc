@@ -15,7 +15,7 @@ void add_run_options(CLI::App& command, RunOptions& o) {
       ->check(CLI::IsMember({"mujoco", "stub"}))
       ->capture_default_str();
   command.add_option("--world", o.world, "World file, or the name of one in sim/worlds")->capture_default_str();
-  command.add_option("--for", o.duration_text, "How long at most, e.g. 20s (default 20 s; no bound with --steps)");
+  command.add_option("--for", o.duration_text, "How long at most, e.g. 20s (default 20 s, with --steps N 20 s + N s)");
   command.add_option("--steps", o.steps, "Ends after this many steps")->check(CLI::PositiveNumber);
   command.add_option("--seed", o.seed, "Seed of everything random in the world")->capture_default_str();
   command.add_option("--set", o.set, "NAME=VALUE: a parameter, gain or planner value, e.g. lift_time=160ms");
@@ -36,7 +36,8 @@ void add_run_options(CLI::App& command, RunOptions& o) {
 
 void finish_options(RunOptions& o) {
   if (o.duration_text.empty()) {
-    if (o.steps > 0) o.duration = 0.0;
+    // A step never lasts 1 s (that is a fall), so this bound only ends runs that stopped stepping.
+    if (o.steps > 0) o.duration = 20.0 + static_cast<double>(o.steps);
     return;
   }
   const auto quantity = core::parse_quantity(o.duration_text);

@@ -29,7 +29,7 @@ struct TaskInstance {
 struct PlannerInfo {
   std::string name;
   FootPlannerSpec spec;
-  int goal_slot = -1;  // parameter slot of the goal's x (y follows); -1: constant
+  int goal_slot = -1;        // parameter slot of the goal's x (y follows); -1: constant
   std::vector<double> goal;  // constant goal
   int done_event = -1, late_event = -1, failed_event = -1;
 };
@@ -61,7 +61,7 @@ struct Behavior : Chart {
   std::vector<PlannerInfo> planners;
   std::vector<InvokeInfo> invokes;
 
-  int step = -1;  // index of the mark `step`, -1: it marks none
+  int step = -1;                                      // index of the mark `step`, -1: it marks none
   std::vector<int> touchdown_events, liftoff_events;  // by contact
   std::vector<int> fault_events;                      // by core::Fault
   std::vector<int> changed_events;                    // by parameter, parameter.changed.NAME

@@ -34,8 +34,8 @@ std::int64_t periods_of(double seconds, std::int64_t rate_mhz) noexcept {
   const std::int64_t ns = std::llround(seconds * 1e9);  // at most 10^15
   // ns * rate_mhz / 10^12, rounded up, split so that no product overflows 64 bits.
   constexpr std::int64_t kBillion = 1'000'000'000;
-  const std::int64_t whole = ns / kBillion * rate_mhz;      // in thousandths of a period
-  const std::int64_t part = ns % kBillion * rate_mhz;       // in 10^-12 periods
+  const std::int64_t whole = ns / kBillion * rate_mhz;  // in thousandths of a period
+  const std::int64_t part = ns % kBillion * rate_mhz;   // in 10^-12 periods
   const std::int64_t thousandths = whole + part / kBillion;
   const bool rest = part % kBillion != 0 || thousandths % 1000 != 0;
   return thousandths / 1000 + (rest ? 1 : 0);

@@ -21,7 +21,12 @@ struct Range {
 };
 
 enum class StateKind : std::uint8_t {
-  atomic, compound, parallel, final, history_shallow, history_deep,
+  atomic,
+  compound,
+  parallel,
+  final,
+  history_shallow,
+  history_deep,
 };
 
 // When a parallel state raises its `done.state` (region: index of a state in StateInfo).
@@ -40,23 +45,23 @@ struct StateInfo {
   Range transitions;  // into Chart::transitions, in document order
   Range on_entry;     // into Chart::actions
   Range on_exit;
-  Range invokes;            // into Behavior::invokes
-  int done_event = -1;      // id of done.state.PATH
+  Range invokes;        // into Behavior::invokes
+  int done_event = -1;  // id of done.state.PATH
   DoneRule done = DoneRule::all;
   int done_region = -1;
-  int history = -1;         // slot of a history state
-  int control_weight = 0;   // the sum over active states is the index into Behavior::controls
+  int history = -1;        // slot of a history state
+  int control_weight = 0;  // the sum over active states is the index into Behavior::controls
 };
 
 struct TransitionInfo {
   core::Mark mark;
   int source = 0;
-  Range targets;            // into Chart::targets; none: actions only, no exit, no entry
-  bool has_event = false;   // false: event-less
-  int guard = -1;           // expression, -1: none
-  int after = -1;           // expression of a time, -1: none
+  Range targets;           // into Chart::targets; none: actions only, no exit, no entry
+  bool has_event = false;  // false: event-less
+  int guard = -1;          // expression, -1: none
+  int after = -1;          // expression of a time, -1: none
   bool internal = false;
-  int domain = -1;          // precomputed; -1: no targets, or a history target (then at run time)
+  int domain = -1;  // precomputed; -1: no targets, or a history target (then at run time)
   Range actions;
   std::string reason;
 };
@@ -93,10 +98,10 @@ struct Chart {
   // Which events enable which transition: bit e of row t; event_words 64-bit words a row.
   std::vector<std::uint64_t> event_match;
   int event_words = 0;
-  int safe_transition = -1;     // to the root's `safe` state, -1: none
+  int safe_transition = -1;  // to the root's `safe` state, -1: none
   int history_count = 0;
-  int error_execution = -1;     // event id
-  int event_overflow = -1;      // event id
+  int error_execution = -1;  // event id
+  int event_overflow = -1;   // event id
 
   double period() const { return 1e3 / static_cast<double>(rate_mhz); }
   bool is_descendant(int state, int ancestor) const {

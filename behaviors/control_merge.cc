@@ -31,7 +31,8 @@ void ControlMerge::update(const Measure& measure, bool moved) noexcept {
   if (moved) {
     rebuild(measure);
   } else {
-    for (int i = 0; i < control_.primary.task_count; ++i) control_.primary.tasks[at(i)].fresh = false;
+    for (int i = 0; i < control_.primary.task_count; ++i)
+      control_.primary.tasks[at(i)].fresh = false;
     for (int i = 0; i < control_.other.task_count; ++i) control_.other.tasks[at(i)].fresh = false;
   }
   advance(*primary_, control_.primary);
@@ -157,7 +158,8 @@ void ControlMerge::advance(Bank& bank, tasks::ControlSet& set) noexcept {
     const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
     tasks::InternalCommand& command = set.internals[at(k)];
     command.reference =
-        internal.scale * value_or(internal.reference, command.reference / internal.scale, bank, nullptr);
+        internal.scale *
+        value_or(internal.reference, command.reference / internal.scale, bank, nullptr);
     command.feedback = value_or(internal.feedback, command.feedback, bank, nullptr);
   }
 }
@@ -206,8 +208,8 @@ void ControlMerge::retarget(Bank& bank, const TaskSpec& spec,
     const double t = static_cast<double>(context.tick - state.start_tick) * context.period;
     const double left = state.segment.duration - t;
     if (to == state.segment.to || left < (1.0 - kLastRetarget) * state.over) continue;
-    const Shape shape = spec.reference.shape == Shape::polynomial3 ? Shape::polynomial3
-                                                                   : Shape::polynomial5;
+    const Shape shape =
+        spec.reference.shape == Shape::polynomial3 ? Shape::polynomial3 : Shape::polynomial5;
     const Motion now = sample(state.segment, t);
     state.segment = make_segment(shape, now, to, state.segment.end_velocity, left);
     state.start_tick = context.tick;

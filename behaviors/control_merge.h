@@ -58,7 +58,8 @@ class ControlMerge {
             const Measure& measure) noexcept;
   void fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index,
                  const Measure& measure) noexcept;
-  void start_reference(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec) noexcept;
+  void start_reference(Bank& bank, const tasks::TaskCommand& command,
+                       const TaskSpec& spec) noexcept;
   Kept find_kept(int instance) const noexcept;
   void advance(Bank& bank, tasks::ControlSet& set) noexcept;
   void advance_task(Bank& bank, tasks::ControlSet& set, int index) noexcept;

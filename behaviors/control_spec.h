@@ -34,7 +34,7 @@ struct TaskSpec {
   int point = -1;
   tasks::Frame frame = tasks::Frame::world;
   int priority = 1;
-  int weight = -1;              // expressions, -1: the default of TaskCommand
+  int weight = -1;  // expressions, -1: the default of TaskCommand
   int acceleration_limit = -1;
   int integral_limit = -1;
   Range axes;  // into Behavior::axes
@@ -51,20 +51,20 @@ struct InternalSpec {
 
 // A torque-continuous change of the contact set.
 struct TransitionSpec {
-  int owner = 0;           // state that declares it
-  bool loads = false;      // else releases
-  int over = -1;           // expression of a time
-  int toward = -1;         // index into Behavior::controls
+  int owner = 0;       // state that declares it
+  bool loads = false;  // else releases
+  int over = -1;       // expression of a time
+  int toward = -1;     // index into Behavior::controls
   tasks::TransitionForm form = tasks::TransitionForm::continuous;
   std::vector<int> contacts;  // that move
 };
 
 struct ControlSpec {
   std::vector<int> contacts;
-  Range tasks;      // into Behavior::tasks, by priority, then in document order
-  Range internals;  // into Behavior::internals
-  int transition = -1;                 // into Behavior::contact_transitions
-  std::vector<int> torque_loops;       // by joint: index into Behavior::torque_loops, -1: as it is
+  Range tasks;                    // into Behavior::tasks, by priority, then in document order
+  Range internals;                // into Behavior::internals
+  int transition = -1;            // into Behavior::contact_transitions
+  std::vector<int> torque_loops;  // by joint: index into Behavior::torque_loops, -1: as it is
 };
 
 // Gains of the actuators' own torque loop, by joint; NaN where the table says nothing.
@@ -77,12 +77,12 @@ struct TorqueLoopTable {
 struct InvokeInfo {
   int state = 0;
   int planner = 0;
-  int at = -1;               // expression of a time in the state; -1: at_fraction of `after`
-  double at_fraction = 0.0;  // with after >= 0
-  int after = -1;            // expression of the state's own duration
-  int every = -1;            // expression of a time; -1: asked once
-  int deadline = -1;         // expression of a time; -1: none
-  bool closed_form = false;  // what a late plan is replaced by, else the last one stays
+  int at = -1;                  // expression of a time in the state; -1: at_fraction of `after`
+  double at_fraction = 0.0;     // with after >= 0
+  int after = -1;               // expression of the state's own duration
+  int every = -1;               // expression of a time; -1: asked once
+  int deadline = -1;            // expression of a time; -1: none
+  bool closed_form = false;     // what a late plan is replaced by, else the last one stays
   int stance = -1, swing = -1;  // contact indices
   int switch_in = -1;           // expression of a time
 };

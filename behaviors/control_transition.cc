@@ -1,5 +1,6 @@
-// Contact transitions: two complete control laws and the weight between them. The torques are blended
-// by the whole-body controller, so both ends are exact ([Kim16] eqs (1)-(2), torque-continuous).
+// Contact transitions: two complete control laws and the weight between them. The torques are
+// blended by the whole-body controller, so both ends are exact ([Kim16] eqs (1)-(2),
+// torque-continuous).
 //   releases:  w = (1 + cos(pi s))/2 of the set just left, from 1 in the first tick to 0
 //   loads:     w = (1 - cos(pi s))/2 of the set to come, from 0 to 1
 // with s = ticks in the state / ticks of `over`. The ramp is a cosine where the paper's is linear.
@@ -22,9 +23,9 @@ void ControlMerge::update_transition(const ControlSpec& spec, const Measure& mea
     return;
   }
   const TransitionSpec& now = behavior_.contact_transitions[at(spec.transition)];
-  const bool goes_on =
-      transition_ >= 0 && behavior_.contact_transitions[at(transition_)].owner == now.owner &&
-      transition_serial_ == statechart_.entry_serial(now.owner);
+  const bool goes_on = transition_ >= 0 &&
+                       behavior_.contact_transitions[at(transition_)].owner == now.owner &&
+                       transition_serial_ == statechart_.entry_serial(now.owner);
   transition_ = spec.transition;
   if (goes_on) {
     std::swap(other_, old_other_);
@@ -63,8 +64,7 @@ void ControlMerge::weigh_transition() noexcept {
   control_.other_weight = 0.0;
   if (!control_.has_other) return;
   const TransitionSpec& transition = behavior_.contact_transitions[at(transition_)];
-  const std::int64_t ticks =
-      statechart_.context().tick - statechart_.entry_tick(transition.owner);
+  const std::int64_t ticks = statechart_.context().tick - statechart_.entry_tick(transition.owner);
   const bool over = ticks >= transition_periods_;
   const double s =
       over ? 1.0 : static_cast<double>(ticks) / static_cast<double>(transition_periods_);

@@ -15,12 +15,18 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 double compare(Op op, double a, double b) noexcept {
   if (!std::isfinite(a) || !std::isfinite(b)) return kNaN;
   switch (op) {
-    case Op::less: return a < b ? 1.0 : 0.0;
-    case Op::less_equal: return a <= b ? 1.0 : 0.0;
-    case Op::greater: return a > b ? 1.0 : 0.0;
-    case Op::greater_equal: return a >= b ? 1.0 : 0.0;
-    case Op::equal: return a == b ? 1.0 : 0.0;
-    default: return a != b ? 1.0 : 0.0;
+    case Op::less:
+      return a < b ? 1.0 : 0.0;
+    case Op::less_equal:
+      return a <= b ? 1.0 : 0.0;
+    case Op::greater:
+      return a > b ? 1.0 : 0.0;
+    case Op::greater_equal:
+      return a >= b ? 1.0 : 0.0;
+    case Op::equal:
+      return a == b ? 1.0 : 0.0;
+    default:
+      return a != b ? 1.0 : 0.0;
   }
 }
 
@@ -36,43 +42,69 @@ double logic(Op op, double a, double b) noexcept {
 
 double binary(Op op, double a, double b) noexcept {
   switch (op) {
-    case Op::add: return a + b;
-    case Op::subtract: return a - b;
-    case Op::multiply: return a * b;
-    case Op::divide: return b == 0.0 ? kNaN : a / b;
-    case Op::power: return std::pow(a, b);
-    case Op::minimum: return std::isnan(a) || std::isnan(b) ? kNaN : std::min(a, b);
-    case Op::maximum: return std::isnan(a) || std::isnan(b) ? kNaN : std::max(a, b);
-    case Op::arctangent2: return std::atan2(a, b);
-    case Op::hypotenuse: return std::hypot(a, b);
+    case Op::add:
+      return a + b;
+    case Op::subtract:
+      return a - b;
+    case Op::multiply:
+      return a * b;
+    case Op::divide:
+      return b == 0.0 ? kNaN : a / b;
+    case Op::power:
+      return std::pow(a, b);
+    case Op::minimum:
+      return std::isnan(a) || std::isnan(b) ? kNaN : std::min(a, b);
+    case Op::maximum:
+      return std::isnan(a) || std::isnan(b) ? kNaN : std::max(a, b);
+    case Op::arctangent2:
+      return std::atan2(a, b);
+    case Op::hypotenuse:
+      return std::hypot(a, b);
     case Op::logical_and:
-    case Op::logical_or: return logic(op, a, b);
-    default: return compare(op, a, b);
+    case Op::logical_or:
+      return logic(op, a, b);
+    default:
+      return compare(op, a, b);
   }
 }
 
 double unary(Op op, double a) noexcept {
   switch (op) {
-    case Op::negate: return -a;
-    case Op::logical_not: return std::isfinite(a) ? (a == 0.0 ? 1.0 : 0.0) : kNaN;
-    case Op::absolute: return std::abs(a);
-    case Op::square_root: return std::sqrt(a);
-    case Op::sine: return std::sin(a);
-    case Op::cosine: return std::cos(a);
-    case Op::exponential: return std::exp(a);
-    default: return std::log(a);
+    case Op::negate:
+      return -a;
+    case Op::logical_not:
+      return std::isfinite(a) ? (a == 0.0 ? 1.0 : 0.0) : kNaN;
+    case Op::absolute:
+      return std::abs(a);
+    case Op::square_root:
+      return std::sqrt(a);
+    case Op::sine:
+      return std::sin(a);
+    case Op::cosine:
+      return std::cos(a);
+    case Op::exponential:
+      return std::exp(a);
+    default:
+      return std::log(a);
   }
 }
 
 double load(const Instruction& i, const EvaluationContext& c) noexcept {
   switch (i.op) {
-    case Op::constant: return i.value;
-    case Op::parameter: return c.parameters[i.index];
-    case Op::signal: return c.signals[i.index];
-    case Op::state_time: return static_cast<double>(c.tick - c.entry_ticks[i.index]) * c.period;
-    case Op::time: return static_cast<double>(c.tick) * c.period;
-    case Op::in_state: return c.active[i.index] != 0 ? 1.0 : 0.0;
-    default: return c.entry == nullptr ? kNaN : c.entry[i.index];
+    case Op::constant:
+      return i.value;
+    case Op::parameter:
+      return c.parameters[i.index];
+    case Op::signal:
+      return c.signals[i.index];
+    case Op::state_time:
+      return static_cast<double>(c.tick - c.entry_ticks[i.index]) * c.period;
+    case Op::time:
+      return static_cast<double>(c.tick) * c.period;
+    case Op::in_state:
+      return c.active[i.index] != 0 ? 1.0 : 0.0;
+    default:
+      return c.entry == nullptr ? kNaN : c.entry[i.index];
   }
 }
 

@@ -1,6 +1,6 @@
-// Expressions of the behavior language: compiled at load to flat postfix code, evaluated in the tick
-// on a bounded stack without allocation. Dimensions are checked by the compiler; a value that is not
-// finite (division by zero, log of a negative number) is the caller's to judge.
+// Expressions of the behavior language: compiled at load to flat postfix code, evaluated in the
+// tick on a bounded stack without allocation. Dimensions are checked by the compiler; a value that
+// is not finite (division by zero, log of a negative number) is the caller's to judge.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,33 @@ enum class Op : std::uint8_t {
   time,        // s since start
   in_state,    // 1 while state `index` is active
   entry,       // entry[index]: what the task's reference started from
-  negate, logical_not,
-  add, subtract, multiply, divide, power,
-  less, less_equal, greater, greater_equal, equal, not_equal,
-  logical_and, logical_or, select,
-  absolute, minimum, maximum, clamp, square_root, sine, cosine, arctangent2, hypotenuse,
-  exponential, logarithm,
+  negate,
+  logical_not,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  less,
+  less_equal,
+  greater,
+  greater_equal,
+  equal,
+  not_equal,
+  logical_and,
+  logical_or,
+  select,
+  absolute,
+  minimum,
+  maximum,
+  clamp,
+  square_root,
+  sine,
+  cosine,
+  arctangent2,
+  hypotenuse,
+  exponential,
+  logarithm,
 };
 
 struct Instruction {
@@ -89,8 +110,8 @@ struct ExpressionScope {
   // Index of a state by its (partial) name; -1 and a reason otherwise.
   std::function<int(std::string_view name, std::string& why)> find_state;
   const std::vector<std::string>* entry_axes = nullptr;  // names of `entry.AXIS`
-  int entry_axis = -1;              // what a lone `entry` is
-  core::Dimension entry_dimension;  // of the task's axes
+  int entry_axis = -1;                                   // what a lone `entry` is
+  core::Dimension entry_dimension;                       // of the task's axes
 };
 
 // Where and why an expression was refused; `offset` counts bytes from the start of the text.
@@ -100,8 +121,9 @@ struct ExpressionError {
   std::string text;
 };
 
-// Compiles `text` (without a leading `=`) and appends it to the pool. `expected` is checked if given;
-// a number without unit adopts the dimension needed. Returns -1 and fills `error` on failure.
+// Compiles `text` (without a leading `=`) and appends it to the pool. `expected` is checked if
+// given; a number without unit adopts the dimension needed. Returns -1 and fills `error` on
+// failure.
 int compile_expression(std::string_view text, const ExpressionScope& scope,
                        std::optional<core::Dimension> expected, ExpressionPool& pool,
                        ExpressionError& error);

@@ -1,4 +1,6 @@
 // What stands between the operators: numbers, names, functions.
+#include <fmt/format.h>
+
 #include <array>
 
 #include "behaviors/expression_parser.h"
@@ -57,7 +59,7 @@ Operand ExpressionParser::parse_call(const Token& name) {
   std::vector<std::string> names = {"in"};
   for (const FunctionInfo& function : kFunctions) names.emplace_back(function.name);
   fail(name, "unknown-function",
-       "unknown function '" + name.text + "'" + core::did_you_mean(name.text, names));
+       fmt::format("unknown function '{}'{}", name.text, core::did_you_mean(name.text, names)));
 }
 
 Operand ExpressionParser::parse_in() {
@@ -93,25 +95,28 @@ Operand ExpressionParser::parse_function(const Token& name, const FunctionInfo& 
   }
   if (count < function.arguments || !is(")")) {
     fail(name, "bad-expression",
-         text + "() expects " + std::to_string(function.arguments) + " argument" +
-             (function.arguments == 1 ? "" : "s"));
+         fmt::format("{}() expects {} argument{}", text, function.arguments,
+                     function.arguments == 1 ? "" : "s"));
   }
   take();
   if (!any) emit(function.op);
   return result_of(function, name, result);
 }
 
-Operand ExpressionParser::result_of(const FunctionInfo& function, const Token& name, Operand argument) {
+Operand ExpressionParser::result_of(const FunctionInfo& function, const Token& name,
+                                    Operand argument) {
   argument.literal = false;
   if (function.rule == Rule::same) return argument;
   if (function.rule != Rule::half) return {};
   const core::Dimension d = argument.dimension;
   if (d.m % 2 != 0 || d.kg % 2 != 0 || d.s % 2 != 0) {
-    fail(name, "dimension", "sqrt() of " + core::dimension_name(d) + " has no dimension");
+    fail(name, "dimension", fmt::format("sqrt() of {} has no dimension", core::dimension_name(d)));
   }
   return {{static_cast<std::int8_t>(d.m / 2), static_cast<std::int8_t>(d.kg / 2),
            static_cast<std::int8_t>(d.s / 2)},
-          argument.bare, false, 0.0};
+          argument.bare,
+          false,
+          0.0};
 }
 
 Operand ExpressionParser::parse_parameter(const Token& token) {
@@ -125,20 +130,20 @@ Operand ExpressionParser::parse_parameter(const Token& token) {
       component = component_of(token.text.substr(dot + 1), parameter.size);
       if (component < 0) {
         fail(token, "unknown-parameter",
-             "parameter '" + parameter.name + "' has no component '" +
-                 token.text.substr(dot + 1) + "'");
+             fmt::format("parameter '{}' has no component '{}'", parameter.name,
+                         token.text.substr(dot + 1)));
       }
     }
     if (component < 0) {
       fail(token, "bad-size",
-           "parameter '" + parameter.name + "' has " + std::to_string(parameter.size) +
-               " values: write $" + parameter.name + ".x");
+           fmt::format("parameter '{}' has {} values: write ${}.x", parameter.name, parameter.size,
+                       parameter.name));
     }
     emit(Op::parameter, parameter.slot + component);
     return {parameter.dimension, parameter.bare, false, 0.0};
   }
   fail(token, "unknown-parameter",
-       "unknown parameter '$" + token.text + "'" + core::did_you_mean(token.text, names));
+       fmt::format("unknown parameter '${}'{}", token.text, core::did_you_mean(token.text, names)));
 }
 
 int ExpressionParser::component_of(const std::string& name, int size) {
@@ -160,7 +165,8 @@ Operand ExpressionParser::parse_entry(const Token& token) {
     }
     if (axis < 0) {
       fail(token, "unknown-name",
-           "the task has no axis '" + name + "'" + core::did_you_mean(name, *scope_.entry_axes));
+           fmt::format("the task has no axis '{}'{}", name,
+                       core::did_you_mean(name, *scope_.entry_axes)));
     }
   } else if (axis < 0) {
     fail(token, "unknown-name", "'entry' needs an axis here: write entry.x");
@@ -200,12 +206,13 @@ void ExpressionParser::unknown_name(const Token& token) {
   }
   for (const ParameterInfo& parameter : *scope_.parameters) {
     if (parameter.name == token.text) {
-      fail(token, "unknown-signal",
-           "unknown signal '" + token.text + "': a parameter is written '$" + token.text + "'");
+      fail(
+          token, "unknown-signal",
+          fmt::format("unknown signal '{}': a parameter is written '${}'", token.text, token.text));
     }
   }
   fail(token, "unknown-signal",
-       "unknown signal '" + token.text + "'" + core::did_you_mean(token.text, names));
+       fmt::format("unknown signal '{}'{}", token.text, core::did_you_mean(token.text, names)));
 }
 
 }  // namespace footfall::behaviors

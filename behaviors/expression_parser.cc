@@ -1,6 +1,8 @@
 // Operators of expressions, from the weakest to the strongest; see expression_parser.h.
 #include "behaviors/expression_parser.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,10 +20,14 @@ Operand ExpressionParser::compile() {
 
 std::string ExpressionParser::describe(const Token& token) {
   switch (token.kind) {
-    case Token::Kind::end: return "end of expression";
-    case Token::Kind::number: return "a number";
-    case Token::Kind::parameter: return "'$" + token.text + "'";
-    default: return "'" + token.text + "'";
+    case Token::Kind::end:
+      return "end of expression";
+    case Token::Kind::number:
+      return "a number";
+    case Token::Kind::parameter:
+      return fmt::format("'${}'", token.text);
+    default:
+      return fmt::format("'{}'", token.text);
   }
 }
 
@@ -32,8 +38,7 @@ void ExpressionParser::fail(const Token& token, std::string id, std::string text
 
 void ExpressionParser::expect(std::string_view symbol) {
   if (!is(symbol)) {
-    fail(peek(), "bad-expression",
-         "expected '" + std::string(symbol) + "', got " + describe(peek()));
+    fail(peek(), "bad-expression", fmt::format("expected '{}', got {}", symbol, describe(peek())));
   }
   take();
 }
@@ -53,19 +58,20 @@ void ExpressionParser::emit(Op op, int index, double value) {
   code.push_back({op, index, value});
 }
 
-Operand ExpressionParser::unify(const Operand& a, const Operand& b, const Token& at, const std::string& what) {
+Operand ExpressionParser::unify(const Operand& a, const Operand& b, const Token& at,
+                                const std::string& what) {
   if (a.dimension == b.dimension) return {a.dimension, a.bare && b.bare, false, 0.0};
   if (a.bare) return {b.dimension, false, false, 0.0};
   if (b.bare) return {a.dimension, false, false, 0.0};
   fail(at, "dimension",
-       "cannot " + what + " " + core::dimension_name(a.dimension) + " and " +
-           core::dimension_name(b.dimension));
+       fmt::format("cannot {} {} and {}", what, core::dimension_name(a.dimension),
+                   core::dimension_name(b.dimension)));
 }
 
 void ExpressionParser::require_plain(const Operand& a, const Token& at, const std::string& what) {
   if (!(a.dimension == core::kNone)) {
     fail(at, "dimension",
-         what + " expects a plain number, got " + core::dimension_name(a.dimension));
+         fmt::format("{} expects a plain number, got {}", what, core::dimension_name(a.dimension)));
   }
 }
 
@@ -224,14 +230,13 @@ int compile_expression(std::string_view text, const ExpressionScope& scope,
   }
   if (expected && !result.bare && !(result.dimension == *expected)) {
     error = {tokens->front().offset, "dimension",
-             "expected " + core::dimension_name(*expected) + ", got " +
-                 core::dimension_name(result.dimension)};
+             fmt::format("expected {}, got {}", core::dimension_name(*expected),
+                         core::dimension_name(result.dimension))};
     return -1;
   }
-  pool.expressions.push_back({static_cast<int>(pool.code.size()),
-                              static_cast<int>(parser.code.size()),
-                              result.bare && expected ? *expected : result.dimension, result.bare,
-                              parser.constant});
+  pool.expressions.push_back(
+      {static_cast<int>(pool.code.size()), static_cast<int>(parser.code.size()),
+       result.bare && expected ? *expected : result.dimension, result.bare, parser.constant});
   pool.code.insert(pool.code.end(), parser.code.begin(), parser.code.end());
   return pool.size() - 1;
 }

@@ -1,6 +1,6 @@
 // The parser of expressions: recursive descent over the tokens, straight to postfix code, with the
-// dimension of every part. A number without a unit is SI and adopts the dimension of what it is added
-// to or compared with.
+// dimension of every part. A number without a unit is SI and adopts the dimension of what it is
+// added to or compared with.
 #pragma once
 
 #include <optional>
@@ -29,7 +29,8 @@ struct FunctionInfo;
 // One pass over the tokens; throws Failure with the error written down.
 class ExpressionParser {
  public:
-  ExpressionParser(const ExpressionScope& scope, const std::vector<Token>& tokens, ExpressionError& error)
+  ExpressionParser(const ExpressionScope& scope, const std::vector<Token>& tokens,
+                   ExpressionError& error)
       : scope_(scope), tokens_(tokens), error_(error) {}
 
   Operand compile();

@@ -1,6 +1,8 @@
 // Numbers take the longest unit that follows them: `6 cm`, `0.25 m/s`, `220 1/s^2`.
 #include "behaviors/expression_tokens.h"
 
+#include <fmt/format.h>
+
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -77,16 +79,14 @@ void read_name(std::string_view text, std::size_t& at, std::string& name) {
 }
 
 bool read_symbol(std::string_view text, std::size_t& at, Token& token) {
-  token.kind = Token::Kind::symbol;
-  for (const std::string_view two : {"<=", ">=", "==", "!="}) {
-    if (text.substr(at, 2) == two) {
-      token.text = two;
-      at += 2;
-      return true;
-    }
+  const std::string_view two = text.substr(at, 2);
+  const bool pair = two == "<=" || two == ">=" || two == "==" || two == "!=";
+  if (!pair && std::string_view("+-*/^<>()?:,").find(text[at]) == std::string_view::npos) {
+    return false;
   }
-  if (std::string_view("+-*/^<>()?:,").find(text[at]) == std::string_view::npos) return false;
-  token.text = text[at++];
+  token.kind = Token::Kind::symbol;
+  token.text = std::string(text.substr(at, pair ? 2 : 1));
+  at += token.text.size();
   return true;
 }
 
@@ -114,8 +114,7 @@ std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionErro
       ++at;
       read_name(text, at, token.text);
     } else if (!read_symbol(text, at, token)) {
-      error = {token.offset, "bad-character",
-               std::string("unexpected '") + c + "' in an expression"};
+      error = {token.offset, "bad-character", fmt::format("unexpected '{}' in an expression", c)};
       return std::nullopt;
     }
     tokens.push_back(std::move(token));

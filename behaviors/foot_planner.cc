@@ -16,17 +16,16 @@ Vector2 to_world(const Vector2& v, double c, double s) noexcept {
   return {c * v[0] - s * v[1], s * v[0] + c * v[1]};
 }
 
-// Time after the switch until the outward lateral speed reaches `speed`, for the pendulum
-// y(t) = y C + ẏ/ω S: ẏ(t) = ẏ C + ω y S. 0 if it is already there or moves inwards for good.
+// Time after the switch until the lateral speed away from the stance foot reaches `speed`, for the
+// pendulum y(t) = y C + ẏ/ω S: ẏ(t) = ẏ C + ω y S. 0 if it is already there, or if the CoM will
+// pass over the foot and never turn.
 double time_to_speed(double y, double yd, double omega, double speed, double limit) noexcept {
-  const double v = std::abs(yd);
+  const double v = y >= 0.0 ? yd : -yd;
   if (v >= speed) return 0.0;
-  const double sign = yd >= 0.0 ? 1.0 : -1.0;
-  const double a = 0.5 * (v + omega * y * sign);  // a e^{ωt} + b e^{-ωt} = speed
-  const double b = 0.5 * (v - omega * y * sign);
-  const double root = speed * speed - 4.0 * a * b;
-  if (a <= 0.0 || root < 0.0) return limit;
-  const double e = (speed + std::sqrt(root)) / (2.0 * a);
+  const double a = 0.5 * (v + omega * std::abs(y));  // a e^{ωt} + b e^{-ωt} = speed
+  const double b = 0.5 * (v - omega * std::abs(y));
+  if (a <= 0.0) return 0.0;
+  const double e = (speed + std::sqrt(std::max(0.0, speed * speed - 4.0 * a * b))) / (2.0 * a);
   return std::clamp(std::log(std::max(e, 1.0)) / omega, 0.0, limit);
 }
 
@@ -40,6 +39,7 @@ FootPlan plan_foot(const FootPlannerSpec& spec, const FootPlannerInput& in) noex
   const double omega = std::sqrt(spec.gravity / in.com_height);
   const Vector2 x = to_heading({in.com[0] - in.stance[0], in.com[1] - in.stance[1]}, c, s);
   const Vector2 v = to_heading(in.com_vel, c, s);
+  const Vector2 goal_vel = to_heading(in.goal_vel, c, s);
   const Vector2 goal = to_heading({in.goal[0] - in.stance[0], in.goal[1] - in.stance[1]}, c, s);
 
   double time = std::max(0.0, in.switch_in);
@@ -60,11 +60,12 @@ FootPlan plan_foot(const FootPlannerSpec& spec, const FootPlannerInput& in) noex
     const Vector2 p = predict(k, time);
     switch_pos[k] = p[0];
     switch_vel[k] = p[1];
-    double from_goal = p[0] - goal[k];
+    double from_goal = p[0] - (goal[k] + goal_vel[k] * time);
     if (spec.goal_error_limit > 0.0) {
       from_goal = std::clamp(from_goal, -spec.goal_error_limit, spec.goal_error_limit);
     }
-    foot[k] = p[0] + p[1] / (omega * std::tanh(omega * spec.reversal[k])) + spec.kappa[k] * from_goal;
+    foot[k] =
+        p[0] + p[1] / (omega * std::tanh(omega * spec.reversal[k])) + spec.kappa[k] * from_goal;
   }
   foot[1] += in.swing_side * spec.width_offset;
 

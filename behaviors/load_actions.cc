@@ -21,9 +21,9 @@ void load_raise(LoadContext& context, const core::YamlNode& node) {
   const auto name = core::read_text(node, context.diagnostics, "the name of an event");
   if (!name) return;
   const int event = context.add_event(*name);
-  if (event < context.built_in_events && std::find(context.declared_events.begin(),
-                                                   context.declared_events.end(), *name) ==
-                                             context.declared_events.end()) {
+  if (event < context.built_in_events &&
+      std::find(context.declared_events.begin(), context.declared_events.end(), *name) ==
+          context.declared_events.end()) {
     context.error(node.mark, "built-in-event",
                   fmt::format("'{}' is raised by the engine only", *name));
   }

@@ -31,8 +31,7 @@ int LoadContext::compile(const core::YamlNode& node, std::string_view text, std:
     return find_target(std::max(0, scope.state), name, why);
   };
   ExpressionError problem;
-  const int index =
-      compile_expression(marked.text, names, expected, behavior.expressions, problem);
+  const int index = compile_expression(marked.text, names, expected, behavior.expressions, problem);
   if (index >= 0) return index;
   core::Mark mark = node.mark;
   mark.column += static_cast<int>(offset) + (node.quoted ? 1 : 0) + marked.column(problem.offset);
@@ -75,8 +74,8 @@ int LoadContext::compile_time(const core::YamlNode& node, const ValueScope& scop
   const int expression = compile_value(node, core::kTime, scope);
   const auto value = constant_value(expression);
   if (value && periods_of(*value, behavior.rate_mhz) < 0) {
-    error(node.mark, "out-of-range", "expected a time from 0 s to 10^6 s, got " +
-                                         core::describe(node));
+    error(node.mark, "out-of-range",
+          "expected a time from 0 s to 10^6 s, got " + core::describe(node));
     return -1;
   }
   return expression;
@@ -90,9 +89,9 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
     int best = -1, other = -1;
     for (int s = std::max(scope, 1); s < states[static_cast<std::size_t>(scope)].end; ++s) {
       const StateInfo& info = states[static_cast<std::size_t>(s)];
-      const bool fits = info.path == name ||
-                        (info.path.ends_with(name) && info.path.size() > name.size() &&
-                         info.path[info.path.size() - name.size() - 1] == '.');
+      const bool fits =
+          info.path == name || (info.path.ends_with(name) && info.path.size() > name.size() &&
+                                info.path[info.path.size() - name.size() - 1] == '.');
       if (!fits) continue;
       if (best >= 0 && info.depth > states[static_cast<std::size_t>(best)].depth) continue;
       other = best >= 0 && info.depth == states[static_cast<std::size_t>(best)].depth ? best : -1;

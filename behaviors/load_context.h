@@ -1,8 +1,8 @@
 // What the loader's parts share while a behavior is being compiled. Load time only.
 //
-// Order: overrides (--set) into the YAML, robot, parameters, templates expanded into a tree of states,
-// names of states, planners, signals, then everything that holds expressions: transitions, actions,
-// invokes, control.
+// Order: overrides (--set) into the YAML, robot, parameters, templates expanded into a tree of
+// states, names of states, planners, signals, then everything that holds expressions: transitions,
+// actions, invokes, control.
 #pragma once
 
 #include <array>
@@ -29,19 +29,19 @@ using Arguments = std::vector<std::pair<std::string, core::YamlNode>>;
 struct StateSource {
   std::string name;
   core::Mark mark;
-  core::YamlNode keys;   // a map, without `states`, `use`, `mirror` and `with`
-  Arguments arguments;   // in force where it is written; a stack's `$names` are looked up here
+  core::YamlNode keys;  // a map, without `states`, `use`, `mirror` and `with`
+  Arguments arguments;  // in force where it is written; a stack's `$names` are looked up here
   std::vector<StateSource> children;
-  int index = -1;        // into Behavior::states
+  int index = -1;  // into Behavior::states
 };
 
 // One named gain table entry, or the gains written in a task: slots are made at first use.
 struct GainEntry {
   const core::YamlNode* node = nullptr;
-  std::string name;                       // `gains.single.swing`
-  std::array<int, 3> slots{-1, -1, -1};   // kp, ki, kd
+  std::string name;                      // `gains.single.swing`
+  std::array<int, 3> slots{-1, -1, -1};  // kp, ki, kd
   std::array<int, 3> sizes{0, 0, 0};
-  std::vector<std::string> axes;          // of the first task that used it
+  std::vector<std::string> axes;  // of the first task that used it
   bool made = false;
 };
 
@@ -67,12 +67,12 @@ struct LoadContext {
   Behavior& behavior;
   const LoadOptions& options;
   core::Diagnostics& diagnostics;
-  core::YamlNode root;          // the file, overrides applied
-  StateSource machine;          // expanded
-  std::vector<const StateSource*> sources;          // by state index
-  std::map<std::string, GainEntry> gain_entries;    // by name; node addresses stay
+  core::YamlNode root;                                              // the file, overrides applied
+  StateSource machine;                                              // expanded
+  std::vector<const StateSource*> sources;                          // by state index
+  std::map<std::string, GainEntry> gain_entries;                    // by name; node addresses stay
   std::array<std::optional<std::array<double, 2>>, 3> gain_ranges;  // kp, ki, kd
-  std::deque<core::YamlNode> substituted;           // stacks with arguments put in; addresses stay
+  std::deque<core::YamlNode> substituted;  // stacks with arguments put in; addresses stay
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
   std::vector<std::string> used_templates, used_stacks;
   std::vector<std::string> raised_events, declared_events;
@@ -117,6 +117,7 @@ core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments
 void apply_overrides(LoadContext& context);      // load_overrides.cc
 void load_parameters(LoadContext& context);      // load_parameters.cc
 void expand_machine(LoadContext& context);       // load_template.cc
+void check_machine_names(LoadContext& context);  // load_template.cc
 void load_states(LoadContext& context);          // load_machine.cc
 void load_events(LoadContext& context);          // load_events.cc
 void load_planners(LoadContext& context);        // load_planners.cc

@@ -1,5 +1,5 @@
-// One ControlSpec for each combination of active states that differ in control, numbered so that the
-// sum of the active states' weights is its index: the tick finds it without a search.
+// One ControlSpec for each combination of active states that differ in control, numbered so that
+// the sum of the active states' weights is its index: the tick finds it without a search.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -162,9 +162,8 @@ class ControlLoader {
                                  axes, core::kMaxTasks, core::kMaxAxes));
       return;
     }
-    std::stable_sort(specs.begin(), specs.end(), [](const TaskSpec& a, const TaskSpec& b) {
-      return a.priority < b.priority;
-    });
+    std::stable_sort(specs.begin(), specs.end(),
+                     [](const TaskSpec& a, const TaskSpec& b) { return a.priority < b.priority; });
     control.tasks = {static_cast<int>(behavior_.tasks.size()), static_cast<int>(specs.size())};
     behavior_.tasks.insert(behavior_.tasks.end(), specs.begin(), specs.end());
   }
@@ -236,8 +235,7 @@ class ControlLoader {
       spec.over = context_.compile_time(*over, scope);
     }
     if (const auto* form = node.find("form")) {
-      const auto choice =
-          core::read_choice(*form, {"continuous", "frozen"}, context_.diagnostics);
+      const auto choice = core::read_choice(*form, {"continuous", "frozen"}, context_.diagnostics);
       if (choice && *choice == 1) spec.form = tasks::TransitionForm::frozen;
     }
     compile_toward(node, active, spec);
@@ -318,8 +316,8 @@ class ControlLoader {
 
   LoadContext& context_;
   Behavior& behavior_;
-  std::vector<int> counts_;      // combinations, by state
-  std::vector<bool> controls_;   // by state: it or something below it controls
+  std::vector<int> counts_;     // combinations, by state
+  std::vector<bool> controls_;  // by state: it or something below it controls
   std::map<std::vector<std::pair<const void*, int>>, std::optional<TaskSpec>> task_cache_;
 };
 

@@ -48,7 +48,8 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
       }
       continue;
     }
-    if (!core::expect_map(entry.value, fmt::format("the keys of a {}", what), context.diagnostics)) {
+    if (!core::expect_map(entry.value, fmt::format("the keys of a {}", what),
+                          context.diagnostics)) {
       continue;
     }
     if (item == items.end()) {
@@ -59,7 +60,8 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
     for (const core::YamlEntry& key : entry.value.entries) {
       const auto same = [&](const DraftKey& other) { return other.key == key.key; };
       auto found = std::find_if(item->keys.begin(), item->keys.end(), same);
-      if (found == item->keys.end()) found = item->keys.insert(found, DraftKey{key.key, nullptr, 0});
+      if (found == item->keys.end())
+        found = item->keys.insert(found, DraftKey{key.key, nullptr, 0});
       found->node = &key.value;
       found->owner = owner;
       if (key.key == "gains") {
@@ -141,9 +143,9 @@ const core::YamlNode* find_stack(LoadContext& context, const core::YamlNode& nam
     if (stacks != nullptr) {
       for (const auto& entry : stacks->entries) names.push_back(entry.key);
     }
-    context.error(name.mark, "unknown-stack",
-                  fmt::format("unknown stack '{}'{}", name.scalar,
-                              core::did_you_mean(name.scalar, names)));
+    context.error(
+        name.mark, "unknown-stack",
+        fmt::format("unknown stack '{}'{}", name.scalar, core::did_you_mean(name.scalar, names)));
     return context.stack_cache[{name.scalar, state}] = nullptr;
   }
   if (!core::expect_map(*stack, "a stack", context.diagnostics)) return nullptr;

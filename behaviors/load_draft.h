@@ -1,6 +1,6 @@
-// The control of one configuration, merged from YAML but not yet compiled: the stack of the innermost
-// active state that names one, and over it what the active states say, outer before inner, key by
-// key. Load time only.
+// The control of one configuration, merged from YAML but not yet compiled: the stack of the
+// innermost active state that names one, and over it what the active states say, outer before
+// inner, key by key. Load time only.
 #pragma once
 
 #include <string>
@@ -37,8 +37,8 @@ struct Draft {
   int contacts_owner = 0;
   std::vector<DraftItem> tasks;
   std::vector<DraftItem> internals;
-  std::vector<DraftGains> gains;             // outer first
-  std::vector<DraftItem> torque_loops;       // name: foot or group; one key `table`
+  std::vector<DraftGains> gains;        // outer first
+  std::vector<DraftItem> torque_loops;  // name: foot or group; one key `table`
   const core::YamlNode* transition = nullptr;
   int transition_owner = -1;
 };

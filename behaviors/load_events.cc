@@ -57,8 +57,7 @@ std::string resolve_pattern(LoadContext& context, int state, const core::YamlNod
     return text;
   }
   std::string why;
-  const int target =
-      context.find_target(state, std::string_view(text).substr(kDone.size()), why);
+  const int target = context.find_target(state, std::string_view(text).substr(kDone.size()), why);
   if (target < 0) {
     core::Mark mark = node.mark;
     mark.column += static_cast<int>(kDone.size()) + (node.quoted ? 1 : 0);

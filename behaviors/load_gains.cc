@@ -185,9 +185,9 @@ void use_gains(LoadContext& context, GainEntry& entry, const GainUse& use,
     if (node == nullptr || entry.slots[k] < 0) continue;
     const bool same = entry.axes == use.axes;
     if (!node->is_scalar() && !same) {
-      context.error(node->mark, "bad-size",
-                    fmt::format("{} serves a task with other axes too: write one number",
-                                entry.name));
+      context.error(
+          node->mark, "bad-size",
+          fmt::format("{} serves a task with other axes too: write one number", entry.name));
     }
     for (std::size_t i = 0; i < axes.size(); ++i) {
       const int offset = std::min(static_cast<int>(i), entry.sizes[k] - 1);

@@ -12,9 +12,9 @@ int find_planner(LoadContext& context, const core::YamlNode& node) {
     if (planner.name == node.scalar) return static_cast<int>(names.size());
     names.push_back(planner.name);
   }
-  context.error(node.mark, "unknown-planner",
-                fmt::format("unknown planner '{}'{}", node.scalar,
-                            core::did_you_mean(node.scalar, names)));
+  context.error(
+      node.mark, "unknown-planner",
+      fmt::format("unknown planner '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
   return -1;
 }
 
@@ -86,8 +86,7 @@ void load_invoke(LoadContext& context, const core::YamlNode& node, int state) {
     invoke.deadline = context.compile_time(*deadline, scope);
   }
   if (const auto* late = node.find("on_late")) {
-    const auto choice =
-        core::read_choice(*late, {"closed_form", "keep_last"}, context.diagnostics);
+    const auto choice = core::read_choice(*late, {"closed_form", "keep_last"}, context.diagnostics);
     invoke.closed_form = choice && *choice == 0;
   }
   read_with(context, node, scope, invoke);

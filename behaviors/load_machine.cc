@@ -9,10 +9,10 @@ namespace footfall::behaviors {
 namespace {
 
 const std::vector<std::string> kStateKeys = {
-    "doc",         "initial",     "type",    "depth",              "default", "stack",
-    "tasks",       "internal",    "contacts", "gains",             "torque_loop",
-    "contact_transition", "invoke", "on_entry", "on_exit",         "transitions", "after",
-    "to",          "done",        "states",  "use",                "with",    "mirror"};
+    "doc",    "initial",  "type",     "depth",       "default",     "stack",
+    "tasks",  "internal", "contacts", "gains",       "torque_loop", "contact_transition",
+    "invoke", "on_entry", "on_exit",  "transitions", "after",       "to",
+    "done",   "states",   "use",      "with",        "mirror"};
 
 StateInfo& info_of(LoadContext& context, int s) {
   return context.behavior.states[static_cast<std::size_t>(s)];
@@ -62,8 +62,8 @@ void check_state_keys(LoadContext& context, const StateSource& source, const Sta
          "a final or history state has no transitions");
   refuse("after", info.kind == StateKind::final || history,
          "a final or history state has no transitions");
-  for (const char* key : {"on_entry", "on_exit", "invoke", "stack", "tasks", "contacts",
-                          "internal", "gains", "torque_loop", "contact_transition"}) {
+  for (const char* key : {"on_entry", "on_exit", "invoke", "stack", "tasks", "contacts", "internal",
+                          "gains", "torque_loop", "contact_transition"}) {
     refuse(key, history, "a history state only remembers: it has no actions and no control");
   }
 }
@@ -126,8 +126,7 @@ void load_initial(LoadContext& context, int s) {
     const int target = context.behavior.targets[static_cast<std::size_t>(k)];
     if (context.behavior.is_descendant(target, s)) continue;
     context.error(node->mark, "bad-initial",
-                  fmt::format("'{}' is not inside '{}'",
-                              info_of(context, target).path, info.path));
+                  fmt::format("'{}' is not inside '{}'", info_of(context, target).path, info.path));
   }
 }
 
@@ -149,19 +148,19 @@ void load_history(LoadContext& context, int s) {
     for (int c = info.parent + 1; c < parent.end; c = info_of(context, c).end) {
       if (info_of(context, c).history < 0) context.behavior.targets.push_back(c);
     }
-    info.initial.count =
-        static_cast<int>(context.behavior.targets.size()) - info.initial.first;
+    info.initial.count = static_cast<int>(context.behavior.targets.size()) - info.initial.first;
   }
   for (int k = info.initial.first; k < info.initial.end(); ++k) {
     const int target = context.behavior.targets[static_cast<std::size_t>(k)];
     if (info_of(context, target).history >= 0) {
       context.error(node != nullptr ? node->mark : info.mark, "history-loop",
                     fmt::format("history state '{}' stands for a history state: give it a "
-                                "`default` that is none", info.path));
+                                "`default` that is none",
+                                info.path));
     } else if (!context.behavior.is_descendant(target, info.parent)) {
-      context.error(node->mark, "bad-default",
-                    fmt::format("'{}' is not inside '{}'", info_of(context, target).path,
-                                parent.path));
+      context.error(
+          node->mark, "bad-default",
+          fmt::format("'{}' is not inside '{}'", info_of(context, target).path, parent.path));
     }
   }
 }

@@ -110,7 +110,8 @@ void load_parameter(LoadContext& context, const core::YamlEntry& entry) {
 
 void load_parameters(LoadContext& context) {
   const core::YamlNode* section = context.section("parameters");
-  if (section == nullptr || !core::expect_map(*section, "parameters by name", context.diagnostics)) {
+  if (section == nullptr ||
+      !core::expect_map(*section, "parameters by name", context.diagnostics)) {
     return;
   }
   for (const core::YamlEntry& entry : section->entries) load_parameter(context, entry);

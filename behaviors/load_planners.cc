@@ -91,8 +91,9 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
       !core::read_choice(*type, {"velocity_reversal"}, context.diagnostics, "a type of planner")) {
     return;
   }
-  core::check_keys(map, {"type", "kappa", "reversal", "goal", "width_offset", "goal_error_limit",
-                         "reach", "extension", "velocity_filter", "doc"},
+  core::check_keys(map,
+                   {"type", "kappa", "reversal", "goal", "width_offset", "goal_error_limit",
+                    "reach", "extension", "velocity_filter", "doc"},
                    context.diagnostics);
   PlannerInfo planner;
   planner.name = entry.key;
@@ -113,8 +114,9 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
   read_goal(context, map, planner);
   for (const char* what : {"done", "late", "failed"}) {
     const int event = context.add_event(fmt::format("planner.{}.{}", planner.name, what));
-    (what[0] == 'd' ? planner.done_event
-     : what[0] == 'l' ? planner.late_event : planner.failed_event) = event;
+    (what[0] == 'd'   ? planner.done_event
+     : what[0] == 'l' ? planner.late_event
+                      : planner.failed_event) = event;
   }
   context.behavior.planners.push_back(std::move(planner));
 }

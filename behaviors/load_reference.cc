@@ -49,8 +49,8 @@ bool compile_parameter(LoadContext& context, const core::YamlNode& node, const A
     return true;
   }
   for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k] = context.behavior.expressions.add_parameter(info.slot + static_cast<int>(k),
-                                                        axes.dimension);
+    out[k] =
+        context.behavior.expressions.add_parameter(info.slot + static_cast<int>(k), axes.dimension);
   }
   return true;
 }
@@ -84,17 +84,16 @@ std::vector<int> compile_axes(LoadContext& context, const core::YamlNode& node,
   if (node.is_sequence()) {
     if (node.items.size() != axes.names.size()) {
       context.error(node.mark, "bad-size",
-                    fmt::format("expected {} values, one for each of {}, got {}",
-                                axes.names.size(), fmt::join(axes.names, " "),
-                                node.items.size()));
+                    fmt::format("expected {} values, one for each of {}, got {}", axes.names.size(),
+                                fmt::join(axes.names, " "), node.items.size()));
       return out;
     }
     for (std::size_t k = 0; k < out.size(); ++k) {
       out[k] = compile_axis(context, node.items[k], axes, k);
     }
   } else if (node.is_map()) {
-    const auto entries = core::match_names(node, axes.names, axes.joints ? "joint" : "axis",
-                                           context.diagnostics);
+    const auto entries =
+        core::match_names(node, axes.names, axes.joints ? "joint" : "axis", context.diagnostics);
     for (std::size_t k = 0; k < entries.size(); ++k) {
       if (entries[k] != nullptr) {
         out[k] = compile_axis(context, entries[k]->value, axes, k);
@@ -191,7 +190,8 @@ void compile_reference(LoadContext& context, const DraftItem& item, const TaskTy
   if (type.type == tasks::TaskType::joint_damping) return;
   const DraftKey* key = item.find("reference");
   if (key == nullptr) {
-    context.error(item.mark, "missing-key", fmt::format("task '{}' needs a `reference`", item.name));
+    context.error(item.mark, "missing-key",
+                  fmt::format("task '{}' needs a `reference`", item.name));
     return;
   }
   const AxesScope scope{axes, type.position(), type.position(), key->owner, type.joints};

@@ -27,8 +27,7 @@ const std::array<TaskTypeInfo, 5>& task_types() {
 // Adds a task's name and axes; the same name elsewhere adds the axes that are new.
 void add_task(LoadContext& context, const core::YamlEntry& entry) {
   const core::YamlNode* type_node = entry.value.find("type");
-  const TaskTypeInfo* type =
-      type_node == nullptr ? nullptr : find_task_type(type_node->scalar);
+  const TaskTypeInfo* type = type_node == nullptr ? nullptr : find_task_type(type_node->scalar);
   if (type == nullptr) return;  // reported where the task is compiled
   core::Diagnostics silent;
   const core::YamlNode* axes = entry.value.find(type->joints ? "joints" : "axes");
@@ -89,9 +88,9 @@ const TaskTypeInfo* require_task_type(const core::YamlNode& node, core::Diagnost
   }
   std::vector<std::string> names;
   for (const TaskTypeInfo& type : task_types()) names.emplace_back(type.name);
-  diagnostics.error(node.mark, "unknown-task-type",
-                    fmt::format("unknown task type '{}'{}", node.scalar,
-                                core::did_you_mean(node.scalar, names)));
+  diagnostics.error(
+      node.mark, "unknown-task-type",
+      fmt::format("unknown task type '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
   return nullptr;
 }
 

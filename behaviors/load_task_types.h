@@ -15,8 +15,8 @@ struct TaskTypeInfo {
   std::string_view name;
   tasks::TaskType type;
   bool angular = true;
-  bool joints = false;             // its axes are the robot's joints
-  std::vector<std::string> axes;   // in the order of AxisCommand::axis; empty for joints
+  bool joints = false;            // its axes are the robot's joints
+  std::vector<std::string> axes;  // in the order of AxisCommand::axis; empty for joints
   core::Dimension position() const { return angular ? core::kNone : core::kLength; }
 };
 

@@ -18,9 +18,9 @@ int find_point(LoadContext& context, const core::YamlNode& node) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (node.is_scalar() && names[k] == node.scalar) return static_cast<int>(k);
   }
-  context.error(node.mark, "unknown-point",
-                fmt::format("unknown point '{}'{}", node.scalar,
-                            core::did_you_mean(node.scalar, names)));
+  context.error(
+      node.mark, "unknown-point",
+      fmt::format("unknown point '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
   return -1;
 }
 
@@ -67,10 +67,9 @@ GainEntry* choose_gains(LoadContext& context, const DraftItem& item, const Draft
     tables += fmt::format("{}'{}'", tables.empty() ? "" : " and ", gains->node->scalar);
   }
   context.error(item.mark, "no-gains",
-                tables.empty()
-                    ? fmt::format("task '{}' has no gains", item.name)
-                    : fmt::format("task '{}' has no gains: none in it, none in table {}",
-                                  item.name, tables));
+                tables.empty() ? fmt::format("task '{}' has no gains", item.name)
+                               : fmt::format("task '{}' has no gains: none in it, none in table {}",
+                                             item.name, tables));
   return nullptr;
 }
 
@@ -82,7 +81,8 @@ void compile_gains(LoadContext& context, const DraftItem& item, const Draft& dra
   if (type.type == TaskType::joint_damping) {
     for (const char* key : {"kp", "ki"}) {
       if (const auto* node = entry->node->find(key)) {
-        context.error(node->mark, "no-effect", fmt::format("joint_damping has kd only, no {}", key));
+        context.error(node->mark, "no-effect",
+                      fmt::format("joint_damping has kd only, no {}", key));
       }
     }
   }
@@ -96,8 +96,8 @@ void compile_frame(LoadContext& context, const DraftItem& item, TaskSpec& spec) 
   if (key == nullptr) return;
   const std::string expected = orientation ? "heading" : "world";
   if (key->node->scalar == expected) return;
-  const auto choice = core::read_choice(*key->node, {"world", "stance", "heading"},
-                                        context.diagnostics, "a frame");
+  const auto choice =
+      core::read_choice(*key->node, {"world", "stance", "heading"}, context.diagnostics, "a frame");
   if (choice) {
     context.error(key->node->mark, "not-available",
                   fmt::format("frame '{}' of a {} is not available in this version (expected {})",
@@ -145,8 +145,8 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
       if (other.name != item.name) names.push_back(other.name);
     }
     context.error(item.mark, "unknown-task",
-                  fmt::format("task '{}' is not in the stack in force, and has no type{}", item.name,
-                              core::did_you_mean(item.name, names)));
+                  fmt::format("task '{}' is not in the stack in force, and has no type{}",
+                              item.name, core::did_you_mean(item.name, names)));
     return std::nullopt;
   }
   const TaskTypeInfo* type = require_task_type(*type_key->node, context.diagnostics);
@@ -182,11 +182,10 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
   }
   compile_gains(context, item, draft, *type, names, specs);
   spec.weight = compile_limit(context, item, "weight", core::kNone);
-  spec.acceleration_limit =
-      compile_limit(context, item, "acceleration_limit",
-                    type->angular ? core::kRateSquared : core::kAcceleration);
-  spec.integral_limit = compile_limit(context, item, "integral_limit",
-                                      type->position() * core::kTime);
+  spec.acceleration_limit = compile_limit(context, item, "acceleration_limit",
+                                          type->angular ? core::kRateSquared : core::kAcceleration);
+  spec.integral_limit =
+      compile_limit(context, item, "integral_limit", type->position() * core::kTime);
   compile_reference(context, item, *type, names, spec, specs);
   spec.instance = find_instance(context, item, spec.type, spec.point);
   spec.axes = {static_cast<int>(context.behavior.axes.size()), static_cast<int>(specs.size())};
@@ -225,8 +224,7 @@ std::optional<InternalSpec> compile_internal(LoadContext& context, const DraftIt
   spec.reference = context.compile_value(*reference->node, core::kForce, scope);
   spec.feedback = compile_limit(context, item, "feedback", core::kNone);
   if (const DraftKey* convention = item.find("convention")) {
-    const auto choice =
-        core::read_choice(*convention->node, {"mean", "sum"}, context.diagnostics);
+    const auto choice = core::read_choice(*convention->node, {"mean", "sum"}, context.diagnostics);
     if (choice && *choice == 1) spec.scale = 0.5;
   }
   const auto& names = context.behavior.internal_instances;

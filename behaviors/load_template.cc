@@ -9,7 +9,8 @@ namespace footfall::behaviors {
 namespace {
 
 constexpr int kMaxNesting = 32;
-constexpr int kMaxStates = 5000;  // a template that uses another twice, and so on, grows without end
+constexpr int kMaxStates =
+    5000;  // a template that uses another twice, and so on, grows without end
 
 core::YamlNode text_node(std::string text, core::Mark mark) {
   core::YamlNode node;
@@ -65,9 +66,9 @@ const core::YamlNode* find_template(LoadContext& context, const core::YamlNode& 
   if (templates != nullptr) {
     for (const auto& entry : templates->entries) names.push_back(entry.key);
   }
-  context.error(name.mark, "unknown-template",
-                fmt::format("unknown template '{}'{}", name.scalar,
-                            core::did_you_mean(name.scalar, names)));
+  context.error(
+      name.mark, "unknown-template",
+      fmt::format("unknown template '{}'{}", name.scalar, core::did_you_mean(name.scalar, names)));
   return nullptr;
 }
 
@@ -167,10 +168,10 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
     return;
   }
   const core::YamlNode none = map_node(name.mark);
-  state.children.push_back(instantiate(context, first, name.mark, *body, *arguments, "1", none,
-                                       state.arguments, depth));
-  state.children.push_back(instantiate(context, second, name.mark, *body, image, "-1", none,
-                                       state.arguments, depth));
+  state.children.push_back(
+      instantiate(context, first, name.mark, *body, *arguments, "1", none, state.arguments, depth));
+  state.children.push_back(
+      instantiate(context, second, name.mark, *body, image, "-1", none, state.arguments, depth));
   core::YamlNode list = map_node(name.mark);
   list.kind = core::YamlNode::Kind::sequence;
   const auto found = std::find_if(state.keys.entries.begin(), state.keys.entries.end(),
@@ -267,8 +268,8 @@ void check_template(LoadContext& context, const core::YamlEntry& entry) {
   for (const core::YamlNode& item : args->items) {
     const auto name = core::read_name(item, context.diagnostics, "the name of an argument");
     if (!name) continue;
-    if (*name == "side" || std::find(parameters.begin(), parameters.end(), *name) !=
-                               parameters.end()) {
+    if (*name == "side" ||
+        std::find(parameters.begin(), parameters.end(), *name) != parameters.end()) {
       context.error(item.mark, "argument-name",
                     fmt::format("argument '{}' has the name of a parameter", *name));
     }
@@ -282,7 +283,7 @@ void check_resolved_text(LoadContext& context, const core::YamlNode& node, std::
     if (at == std::string::npos || text.front() == '=' || key == "when" || key == "log") return;
     std::string name = text.substr(at + 1);
     name = name.substr(0, name.find_first_not_of(
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"));
+                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"));
     const std::vector<std::string> parameters = context.parameter_names();
     if (std::find(parameters.begin(), parameters.end(), name) != parameters.end()) return;
     context.error(mark, "unresolved",
@@ -317,15 +318,17 @@ void expand_machine(LoadContext& context) {
   const core::YamlNode* machine = core::require_key(context.root, "machine", context.diagnostics);
   if (machine == nullptr) return;
   context.machine = expand(context, "machine", machine->mark, *machine, {}, 0);
+}
+
+void check_machine_names(LoadContext& context) {
   check_tree(context, context.machine);
-  if (const core::YamlNode* templates = context.section("templates")) {
-    for (const core::YamlEntry& entry : templates->entries) {
-      if (std::find(context.used_templates.begin(), context.used_templates.end(), entry.key) ==
-          context.used_templates.end()) {
-        context.warning(entry.key_mark, "unused",
-                        fmt::format("template '{}' is never used, and not checked", entry.key));
-      }
-    }
+  const core::YamlNode* templates = context.section("templates");
+  if (templates == nullptr) return;
+  const auto& used = context.used_templates;
+  for (const core::YamlEntry& entry : templates->entries) {
+    if (std::find(used.begin(), used.end(), entry.key) != used.end()) continue;
+    context.warning(entry.key_mark, "unused",
+                    fmt::format("template '{}' is never used, and not checked", entry.key));
   }
 }
 

@@ -68,8 +68,9 @@ void load_timed(LoadContext& context, int state) {
   const core::YamlNode* to = keys_of(context, state).find("to");
   if (after == nullptr && to == nullptr) return;
   if (after == nullptr || to == nullptr) {
-    context.error((after == nullptr ? to : after)->mark, "missing-key",
-                  after == nullptr ? "`to` needs `after` beside it" : "`after` needs `to` beside it");
+    context.error(
+        (after == nullptr ? to : after)->mark, "missing-key",
+        after == nullptr ? "`to` needs `after` beside it" : "`after` needs `to` beside it");
     return;
   }
   TransitionInfo transition;

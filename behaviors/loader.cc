@@ -48,8 +48,10 @@ bool load_structure(LoadContext& context, const std::string& path) {
   load_robot(context, path);
   if (context.diagnostics.error_count() != before) return false;
   load_parameters(context);
+  const int parameters = context.diagnostics.error_count();
   expand_machine(context);
-  if (context.section("machine") == nullptr) return false;
+  if (context.diagnostics.error_count() != parameters) return false;
+  check_machine_names(context);
   const int expanded = context.diagnostics.error_count();
   load_states(context);
   return context.diagnostics.error_count() == expanded;

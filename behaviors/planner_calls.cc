@@ -43,8 +43,8 @@ void PlannerCalls::update_call(const InvokeInfo& invoke, Call& call) noexcept {
   if (!call.active) {
     call.active = true;
     call.serial = serial;
-    const std::int64_t delay = invoke.at >= 0 ? ticks_of(invoke.at, 1.0)
-                                              : ticks_of(invoke.after, invoke.at_fraction);
+    const std::int64_t delay =
+        invoke.at >= 0 ? ticks_of(invoke.at, 1.0) : ticks_of(invoke.after, invoke.at_fraction);
     call.next_ask = delay < 0 ? -1 : statechart_.entry_tick(invoke.state) + delay;
   }
   while (call.count > 0 && call.outstanding[0].deadline >= 0 &&
@@ -58,7 +58,8 @@ void PlannerCalls::update_call(const InvokeInfo& invoke, Call& call) noexcept {
   if (call.next_ask < 0 || tick < call.next_ask) return;
   ask(invoke, call);
   const std::int64_t every = invoke.every < 0 ? -1 : ticks_of(invoke.every, 1.0);
-  call.next_ask = every < 0 ? -1 : std::max(call.next_ask + std::max<std::int64_t>(every, 1), tick + 1);
+  call.next_ask =
+      every < 0 ? -1 : std::max(call.next_ask + std::max<std::int64_t>(every, 1), tick + 1);
 }
 
 // An exit cancels; where a late plan is to be replaced, what follows needs a plan now.
@@ -103,8 +104,8 @@ bool PlannerCalls::deliver(const PlanAnswer& answer) noexcept {
               call.outstanding.begin());
     call.count -= found + 1;
     const PlannerInfo& planner = behavior_.planners[at(answer.planner)];
-    const bool good = answer.ok && std::isfinite(answer.target[0] + answer.target[1] +
-                                                 answer.target[2]);
+    const bool good =
+        answer.ok && std::isfinite(answer.target[0] + answer.target[1] + answer.target[2]);
     if (good) write(answer.planner, answer, switch_time, false);
     emit(good ? planner.done_event : planner.failed_event);
     return true;
@@ -139,8 +140,9 @@ void PlannerCalls::replace_late(const InvokeInfo& invoke, const Outstanding& req
     emit(planner.failed_event);
     return;
   }
-  write(invoke.planner, {invoke.planner, request.sequence, true, plan.target, plan.predicted_pos,
-                         plan.predicted_vel, plan.extension},
+  write(invoke.planner,
+        {invoke.planner, request.sequence, true, plan.target, plan.predicted_pos,
+         plan.predicted_vel, plan.extension},
         request.switch_time, true);
 }
 

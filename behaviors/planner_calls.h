@@ -61,7 +61,8 @@ class PlannerCalls {
   std::vector<Call> calls_;  // by Behavior::invokes
   std::vector<PlanRequest> requests_;
   std::vector<int> events_;
-  std::array<double, core::kMaxContacts> lateral_{};  // m, of each contact at the start, to the left
+  std::array<double, core::kMaxContacts>
+      lateral_{};  // m, of each contact at the start, to the left
   std::uint32_t sequence_ = 0;
 };
 

@@ -28,8 +28,8 @@ void add_body(core::SignalTable& table, SignalLayout& layout) {
                              {"roll", "pitch", "yaw"});
   layout.base_angvel =
       add_axes(table, "base.angvel", core::kRate, "angular velocity of the base, its own axes");
-  layout.centroidal_momentum = add_axes(table, "centroidal.linear", core::kImpulse,
-                                        "linear momentum, world");
+  layout.centroidal_momentum =
+      add_axes(table, "centroidal.linear", core::kImpulse, "linear momentum, world");
   add_axes(table, "centroidal.angular", core::kAngularMomentum,
            "angular momentum about the centre of mass, world");
 }
@@ -41,12 +41,12 @@ void add_robot(const model::RobotDescription& robot, core::SignalTable& table,
         table.add("contact." + contact.name, core::kNone, "1 while its switch is closed"));
   }
   for (const auto& contact : robot.contacts) {
-    layout.support.push_back(table.add("support." + contact.name, core::kNone,
-                                       "1 while the control law counts on it"));
+    layout.support.push_back(
+        table.add("support." + contact.name, core::kNone, "1 while the control law counts on it"));
   }
   for (const auto& contact : robot.contacts) {
-    layout.force.push_back(add_axes(table, "force." + contact.name, core::kForce,
-                                    "measured, ground on robot, world"));
+    layout.force.push_back(
+        add_axes(table, "force." + contact.name, core::kForce, "measured, ground on robot, world"));
   }
   for (const auto& contact : robot.contacts) {
     layout.force_cmd.push_back(add_axes(table, "force_cmd." + contact.name, core::kForce,
@@ -90,8 +90,8 @@ TaskSignals add_task(const TaskName& task, core::SignalTable& table) {
            signals.axis_achieved);
   signals.rank = table.add(name + ".rank", core::kNone, "rank of its priority level");
   signals.condition = table.add(name + ".condition", core::kNone, "condition of its level");
-  signals.authority = table.add(name + ".authority", core::kNone,
-                                "1: all its axes can be met, 0: none");
+  signals.authority =
+      table.add(name + ".authority", core::kNone, "1: all its axes can be met, 0: none");
   return signals;
 }
 

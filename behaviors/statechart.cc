@@ -225,7 +225,7 @@ void Statechart::after_final(int s) noexcept {
     if (in_final(c)) ++done;
   }
   const DoneRule rule = state(grandparent).done;
-  const bool holds = rule == DoneRule::all ? done == regions
+  const bool holds = rule == DoneRule::all   ? done == regions
                      : rule == DoneRule::any ? done == 1
                                              : parent == state(grandparent).done_region;
   if (holds) raise_internal(state(grandparent).done_event);

@@ -1,5 +1,5 @@
-// The statechart at run time: pure W3C SCXML 1.0 semantics (section 3.13 and Appendix D) on the flat
-// arrays of a Chart. It knows ticks, signals and parameters, but nothing of robots or control.
+// The statechart at run time: pure W3C SCXML 1.0 semantics (section 3.13 and Appendix D) on the
+// flat arrays of a Chart. It knows ticks, signals and parameters, but nothing of robots or control.
 // Everything is allocated by the constructor; all else is noexcept and allocation-free.
 #pragma once
 
@@ -35,7 +35,8 @@ class EventQueue {
 
 class Statechart {
  public:
-  // `signals` and `parameters` are read at every tick; actions write parameters. All must outlive it.
+  // `signals` and `parameters` are read at every tick; actions write parameters. All must outlive
+  // it.
   Statechart(const Chart& chart, const double* signals, std::span<double> parameters);
 
   // Enters the initial configuration; event-less transitions wait for the first tick.
@@ -108,12 +109,12 @@ class Statechart {
   std::vector<std::int64_t> entry_ticks_;
   std::vector<std::uint32_t> entry_serials_;
   std::vector<int> control_before_;
-  std::vector<std::int64_t> deadlines_;      // by transition with `after`; tick at which it holds
-  std::vector<std::uint8_t> timer_taken_;    // by transition: event-less timer used up
+  std::vector<std::int64_t> deadlines_;    // by transition with `after`; tick at which it holds
+  std::vector<std::uint8_t> timer_taken_;  // by transition: event-less timer used up
   std::vector<int> active_list_, atomic_list_;
-  std::vector<int> selected_;                // transitions of this micro step
-  std::vector<int> history_values_;          // by slot, states.size() each
-  std::vector<int> history_counts_;          // by slot, 0: never left
+  std::vector<int> selected_;        // transitions of this micro step
+  std::vector<int> history_values_;  // by slot, states.size() each
+  std::vector<int> history_counts_;  // by slot, 0: never left
   mutable std::vector<int> target_scratch_;
   EventQueue internal_, external_;
   std::vector<int> marks_, taken_;

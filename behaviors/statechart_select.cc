@@ -1,7 +1,7 @@
 // Which transitions are taken: SCXML's selectTransitions and removeConflictingTransitions.
-#include "behaviors/statechart.h"
-
 #include <cmath>
+
+#include "behaviors/statechart.h"
 
 namespace footfall::behaviors {
 

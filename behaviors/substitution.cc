@@ -33,7 +33,8 @@ std::string substitute_text(const std::string& text, const Arguments& arguments,
     }
     std::size_t end = at + 1;
     while (end < text.size() && is_name_byte(text[end])) ++end;
-    const auto* value = find_argument(arguments, std::string_view(text).substr(at + 1, end - at - 1));
+    const auto* value =
+        find_argument(arguments, std::string_view(text).substr(at + 1, end - at - 1));
     if (value == nullptr || !value->is_scalar()) {
       out.append(text, at, end - at);
     } else if (!framed) {

@@ -1,5 +1,5 @@
-// Template arguments put into text. Inside an expression a substituted part is framed by two control
-// bytes, so that an error behind it is still reported at its column in the file.
+// Template arguments put into text. Inside an expression a substituted part is framed by two
+// control bytes, so that an error behind it is still reported at its column in the file.
 #pragma once
 
 #include <string>

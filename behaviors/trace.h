@@ -27,8 +27,8 @@ std::optional<std::vector<TraceStep>> load_trace_script_text(std::string_view te
 std::vector<TraceStep> trace_events(std::string_view names);
 
 // Writes one JSON line for the initial configuration and one after each event:
-// {"event":"t1","active":["b1","c1"]}. Time stands still at events and runs through delays, with the
-// robot's rate, or 1 kHz without a robot; signals stay 0.
+// {"event":"t1","active":["b1","c1"]}. Time stands still at events and runs through delays, with
+// the robot's rate, or 1 kHz without a robot; signals stay 0.
 void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::ostream& out);
 
 }  // namespace footfall::behaviors

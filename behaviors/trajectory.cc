@@ -16,7 +16,9 @@ std::array<double, 6> cubic(double x0, double v0, double x1, double v1) noexcept
 // The quintic with acceleration a0 at the start and 0 at the end (per unit of s squared).
 std::array<double, 6> quintic(double x0, double v0, double a0, double x1, double v1) noexcept {
   const double d = x1 - x0;
-  return {x0, v0, 0.5 * a0,
+  return {x0,
+          v0,
+          0.5 * a0,
           10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0,
           -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0,
           6.0 * d - 3.0 * v0 - 3.0 * v1 - 0.5 * a0};

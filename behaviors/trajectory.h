@@ -1,5 +1,5 @@
-// Reference trajectories of one axis, from the value at entry so that nothing jumps. Pure functions of
-// the time since the start; allocation-free.
+// Reference trajectories of one axis, from the value at entry so that nothing jumps. Pure functions
+// of the time since the start; allocation-free.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct Motion {
   double acc = 0.0;
 };
 
-// One segment: from `start` to `to` within `duration`, arriving with `end_velocity`, which is kept on
-// afterwards.
+// One segment: from `start` to `to` within `duration`, arriving with `end_velocity`, which is kept
+// on afterwards.
 //   polynomial3:   cubic with the velocity at both ends
 //   polynomial5:   quintic with velocity and acceleration at the start, acceleration 0 at the end
 //   minimum_jerk:  the same quintic (it minimises jerk between these ends)
@@ -25,7 +25,7 @@ struct Motion {
 //   hold:          stays at the start, velocity 0
 struct Segment {
   Shape shape = Shape::hold;
-  double duration = 0.0;      // s
+  double duration = 0.0;  // s
   double to = 0.0;
   double end_velocity = 0.0;
   Motion start;

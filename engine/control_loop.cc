@@ -16,6 +16,31 @@ std::vector<double> torque_limits(const model::RobotDescription& robot) {
   return limits;
 }
 
+// Where the signals of a task's axis are: tasks of one name list only the axes they use, by name.
+std::vector<std::vector<int>> axis_columns(const behaviors::Behavior& behavior) {
+  std::vector<std::vector<int>> columns(behavior.task_names.size());
+  for (const behaviors::TaskInstance& task : behavior.task_instances) {
+    std::vector<std::string> names;
+    switch (task.type) {
+      case tasks::TaskType::com_position:
+      case tasks::TaskType::point_position: names = {"x", "y", "z"}; break;
+      case tasks::TaskType::body_orientation: names = {"roll", "pitch", "yaw"}; break;
+      case tasks::TaskType::joint_posture:
+      case tasks::TaskType::joint_damping:
+        for (const auto& joint : behavior.robot.joints) names.push_back(joint.name);
+        break;
+    }
+    const auto index = static_cast<std::size_t>(task.signals);
+    const std::vector<std::string>& used = behavior.task_names[index].axes;
+    columns[index].clear();
+    for (const std::string& name : names) {
+      const auto found = std::find(used.begin(), used.end(), name);
+      columns[index].push_back(found == used.end() ? -1 : static_cast<int>(found - used.begin()));
+    }
+  }
+  return columns;
+}
+
 int latency_ticks(double latency, double period) {
   return static_cast<int>(std::ceil(latency / period - 1e-9));
 }
@@ -49,7 +74,8 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       estimator_(behavior.robot.joint_count()),
       planners_(behavior, model_, latency_ticks(settings.planner_latency, period_)),
       safety_(behavior.robot),
-      measure_(model_) {}
+      measure_(model_),
+      axis_column_(axis_columns(behavior)) {}
 
 void ControlLoop::start() {
   hardware_.start();

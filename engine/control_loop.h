@@ -99,6 +99,7 @@ class ControlLoop {
   hal::Commands commands_;
   model::State estimate_;
   core::FaultCounters faults_;
+  std::vector<std::vector<int>> axis_column_;  // by task name and axis: column of its signals, -1
   std::array<bool, core::kFaultCount> active_{};  // faults present in the previous tick
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
   std::int64_t tick_ = 0;

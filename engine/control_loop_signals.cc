@@ -33,7 +33,7 @@ void ControlLoop::write_measured_signals() noexcept {
     put(signals_, layout.force[c], sensors_.force[c]);
   }
   for (std::size_t p = 0; p < layout.point.size(); ++p) {
-    put(signals_, layout.point[p], model_.point(static_cast<int>(p)).position);
+    put(signals_, layout.point[p], model_.point_position(static_cast<int>(p)));
   }
   for (std::size_t j = 0; j < layout.joint.size(); ++j) {
     signals_[layout.joint[j]] = s.q[j];
@@ -86,7 +86,7 @@ void ControlLoop::write_task_signals() noexcept {
     const tasks::TaskCommand& task = set.tasks[at(t)];
     const behaviors::TaskInstance& instance = behavior_.task_instances[at(task.instance)];
     const behaviors::TaskSignals& out = layout.task[at(instance.signals)];
-    const int axes = static_cast<int>(out.axis_error.size());
+    const std::vector<int>& columns = axis_column_[at(instance.signals)];
     double squared = 0.0;
     for (int i = 0; i < task.axis_count; ++i) {
       const tasks::AxisCommand& command = set.axes[at(task.first_axis + i)];
@@ -95,12 +95,13 @@ void ControlLoop::write_task_signals() noexcept {
       if (task.type == tasks::TaskType::com_position) {
         signals_[layout.com_ref + command.axis] = command.ref;
       }
-      if (command.axis >= axes) continue;
-      signals_[out.axis_error[at(command.axis)]] = value.error;
-      signals_[out.axis_reference[at(command.axis)]] = command.ref;
-      signals_[out.axis_measured[at(command.axis)]] = value.measured;
-      signals_[out.axis_commanded[at(command.axis)]] = value.commanded;
-      signals_[out.axis_achieved[at(command.axis)]] = result.achieved[at(task.first_axis + i)];
+      const int column = columns[at(command.axis)];
+      if (column < 0) continue;
+      signals_[out.axis_error[at(column)]] = value.error;
+      signals_[out.axis_reference[at(column)]] = command.ref;
+      signals_[out.axis_measured[at(column)]] = value.measured;
+      signals_[out.axis_commanded[at(column)]] = value.commanded;
+      signals_[out.axis_achieved[at(column)]] = result.achieved[at(task.first_axis + i)];
     }
     signals_[out.error] = std::sqrt(squared);
     signals_[out.rank] = result.tasks[at(t)].rank;

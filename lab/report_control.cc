@@ -32,8 +32,9 @@ void add_curve(const Log& log, TimePlot& plot, const std::string& label, const s
   if (values != nullptr) plot.curves.push_back({label, hue, *values, dashed});
 }
 
+// What was zero all the time was never active: a plot of it would only lengthen the page.
 void keep(Section& section, TimePlot plot) {
-  if (!plot.curves.empty()) section.plots.push_back(std::move(plot));
+  if (greatest(plot) > 0.0) section.plots.push_back(std::move(plot));
 }
 
 std::string spaced(std::string name) {

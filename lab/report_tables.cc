@@ -135,6 +135,31 @@ std::optional<PlanePlot> histogram(const json& timing) {
   return plot;
 }
 
+// [{"part": 0.99, "us": 15.2}, ...]: rows of a table, and a curve over the number of nines, with
+// the time as its logarithm, because the last thousandth is many times the median.
+std::optional<PlanePlot> percentiles(const json& timing, std::string& rows) {
+  if (!timing.contains("percentiles") || !timing["percentiles"].is_array()) return {};
+  PlanePlot plot{"tick-percentiles",
+                 "Time of a tick",
+                 "nines of the ticks (2: 99 %, 3: 99.9 %)",
+                 "log10 of µs",
+                 {},
+                 false,
+                 0.5};
+  PlaneCurve curve{"", "c0", Mark::line, {}, 1.0}, dots{"", "c0", Mark::dot, {}, 1.0};
+  for (const json& item : timing["percentiles"]) {
+    const auto part = number_at(item, "/part"), us = number_at(item, "/us");
+    if (!part || !us) continue;
+    rows += fmt::format("<tr><th>{:.6g} % of the ticks within</th><td>{:.4g} µs</td></tr>",
+                        100.0 * *part, *us);
+    if (*part >= 1.0 || *us <= 0.0) continue;
+    curve.points.push_back({-std::log10(1.0 - *part), std::log10(*us)});
+  }
+  dots.points = curve.points;
+  plot.curves = {std::move(curve), std::move(dots)};
+  return plot;
+}
+
 }  // namespace
 
 std::string summary_html(const Log& log, const std::string& summary_text) {
@@ -190,14 +215,19 @@ std::string settings_html(const Log& log) {
 
 Section event_section(const Log& log) {
   Section section{"events", "Events", "Transitions, marks, faults, plans and steps.", "", {}, {}};
-  if (log.events.empty()) return section;
+  std::vector<LoggedEvent> events = log.events;
+  if (events.size() > kMaxEvents) {  // a planner that answers every tick would hide the rest
+    std::erase_if(events, [](const LoggedEvent& event) { return event.kind == "plan"; });
+    section.lead += " Plans are too many to list; the planner's plots have them.";
+  }
+  if (events.empty()) return section;
   std::vector<std::string> kinds;
-  for (const LoggedEvent& event : log.events) {
+  for (const LoggedEvent& event : events) {
     if (std::ranges::find(kinds, event.kind) == kinds.end()) kinds.push_back(event.kind);
   }
-  if (log.events.size() > kMaxEvents) {
+  if (events.size() > kMaxEvents) {
     section.lead +=
-        fmt::format(" Shown: the first and last {} of {}.", kMaxEvents / 2, log.events.size());
+        fmt::format(" Shown: the first and last {} of {}.", kMaxEvents / 2, events.size());
   }
   section.html = "<p class=\"filter\">";
   for (const std::string& kind : kinds) {
@@ -207,10 +237,9 @@ Section event_section(const Log& log) {
   section.html +=
       "</p><div class=\"scroll\"><table class=\"events\"><thead><tr><th>time, s</th>"
       "<th>kind</th><th>name</th><th>detail</th></tr></thead><tbody>";
-  for (std::size_t i = 0; i < log.events.size(); ++i) {
-    if (log.events.size() > kMaxEvents && i == kMaxEvents / 2)
-      i = log.events.size() - kMaxEvents / 2;
-    const LoggedEvent& event = log.events[i];
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (events.size() > kMaxEvents && i == kMaxEvents / 2) i = events.size() - kMaxEvents / 2;
+    const LoggedEvent& event = events[i];
     section.html += fmt::format(
         "<tr data-kind=\"{1}\"><td>{0:.3f}</td><td>{1}</td><td>{2}</td><td>{3}</td></tr>",
         event.time, escape_html(event.kind), escape_html(event.name), escape_html(event.detail));
@@ -226,8 +255,9 @@ Section timing_section(const std::string& timing_text) {
   if (!timing.is_object()) return section;
   std::string rows;
   add_rows(timing, "", rows);
-  section.html = "<table class=\"keys\">" + rows + "</table>";
+  if (auto plot = percentiles(timing, rows)) section.planes.push_back(std::move(*plot));
   if (auto plot = histogram(timing)) section.planes.push_back(std::move(*plot));
+  section.html = "<table class=\"keys\">" + rows + "</table>";
   return section;
 }
 

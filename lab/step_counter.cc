@@ -17,23 +17,31 @@ StepEvent StepCounter::observe(const bool* contact, const double* height) noexce
       foot.lift_height = height[f];
     }
     if (!contact[f]) {
-      if (foot.in_contact) {
-        foot = {false, false, false, 0, height[f], 0.0};
+      if (foot.in_contact) {  // a bounce after touchdown keeps the step that is pending
+        foot.in_contact = false;
+        foot.air_ticks = 0;
+        foot.lift_height = height[f];
+        foot.rise = 0.0;
       }
       ++foot.air_ticks;
+      if (foot.air_ticks * period_ >= kMinFlight) foot.pending = false;
       foot.rise = std::max(foot.rise, height[f] - foot.lift_height);
       if (foot.air_ticks * period_ > kMaxSwing) swing_too_long_ = true;
     } else if (!foot.in_contact) {
       foot.in_contact = true;
       // Half a period of tolerance: 60 ms is a whole number of ticks at most rates.
       const bool swung = (foot.air_ticks + 0.5) * period_ >= kMinFlight && foot.rise >= kMinRise;
-      if (swung) foot.pending = foot.landed = true;
+      if (swung) {
+        foot.pending = foot.landed = true;
+        foot.swing_time = foot.air_ticks * period_;
+        foot.swing_rise = foot.rise;
+      }
     }
     if (foot.pending && contact[f] && standing == 1) {
       foot.pending = false;
       ++steps_;
-      worst_clearance_ = std::min(worst_clearance_, foot.rise);
-      event = {f, foot.air_ticks * period_, foot.rise};
+      worst_clearance_ = std::min(worst_clearance_, foot.swing_rise);
+      event = {f, foot.swing_time, foot.swing_rise};
     }
   }
   first_ = false;

@@ -40,6 +40,7 @@ class StepCounter {
     int air_ticks = 0;
     double lift_height = 0.0;
     double rise = 0.0;
+    double swing_time = 0.0, swing_rise = 0.0;  // of the last real swing
   };
   int feet_;
   double period_;

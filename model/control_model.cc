@@ -76,6 +76,12 @@ void apply_deviation(mjModel* m, mjData* d, const RobotDescription& robot,
   mj_setConst(m, d);
 }
 
+using Vector3 = std::array<double, 3>;
+
+Vector3 cross(const double* a, const double* b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 // Adds one body's momentum about the tree's CoM. inertia: Ixx Iyy Izz Ixy Ixz Iyz, m c (3), m.
 void add_momentum(const double* inertia, const double* velocity, std::array<double, 6>& sum) {
   const double* I = inertia;
@@ -114,20 +120,26 @@ ControlModel::ControlModel(const RobotDescription& robot, const ModelDeviation& 
   }
   mass_ = m->body_subtreemass[base_body_];
   contact_count_ = static_cast<int>(robot.contacts.size());
+  const auto add_anchor = [&](int site, double radius) {
+    const double* p = m->site_pos + 3 * site;
+    anchors_.push_back({m->site_bodyid[site], {p[0], p[1], p[2]}, radius});
+  };
   for (const ContactDescription& c : robot.contacts) {
-    point_sites_.push_back(require_site(m, robot, c.site, "contact '" + c.name + "'"));
-    point_radii_.push_back(c.radius);
+    add_anchor(require_site(m, robot, c.site, "contact '" + c.name + "'"), c.radius);
   }
   for (const PointDescription& p : robot.points) {
-    point_sites_.push_back(require_site(m, robot, p.site, "point '" + p.name + "'"));
-    point_radii_.push_back(0.0);
+    add_anchor(require_site(m, robot, p.site, "point '" + p.name + "'"), 0.0);
   }
-  points_.resize(point_sites_.size());
+  points_.resize(anchors_.size());
+  fresh_.assign(anchors_.size(), 0);
   const auto cells = static_cast<std::size_t>(3 * nv_);
   for (Kinematics3& p : points_) p.jacobian.assign(cells, 0.0);
   com_.jacobian.assign(cells, 0.0);
   base_.jacobian.assign(cells, 0.0);
   bias_.assign(static_cast<std::size_t>(nv_), 0.0);
+  // Shapes and sites have no part in dynamics, but MuJoCo's kinematics would place each of them
+  // at every tick; their places of interest are kept as anchors.
+  m->ngeom = m->nsite = m->ncam = m->nlight = 0;
 }
 
 ControlModel::~ControlModel() = default;
@@ -155,67 +167,74 @@ void ControlModel::update(const State& state) noexcept {
     bias_[static_cast<std::size_t>(i)] =
         mju_dot(d->cdof + 6 * i, d->cfrc_int + 6 * m->dof_bodyid[i], 6);
   }
-  update_points();
+  update_positions();
   update_com_and_base();
 }
 
-// J̇q̇ of a point fixed to `body` and now at p: a = a_c + α x r + ω x v_p with r from the tree's CoM
-// (MuJoCo's c-frame); gravity, which MuJoCo adds as an acceleration of the world, taken out again.
-std::array<double, 3> ControlModel::point_bias(int body, const double* p) const noexcept {
+// Velocity and J̇q̇ of a point fixed to `body` and now at p: v = v_c + ω x r, a = a_c + α x r + ω x v
+// with r from the tree's CoM (MuJoCo's c-frame); gravity, which MuJoCo adds as an acceleration of
+// the world, taken out again.
+void ControlModel::point_motion(int body, const double* p, std::array<double, 3>* velocity,
+                                std::array<double, 3>& bias) const noexcept {
   const mjModel* m = mj_->model.get();
   const mjData* d = mj_->data.get();
   const double* c = d->subtree_com + 3 * m->body_rootid[body];
   const double* acc = d->cacc + 6 * body;
   const double* vel = d->cvel + 6 * body;
-  const std::array<double, 3> r = {p[0] - c[0], p[1] - c[1], p[2] - c[2]};
-  std::array<double, 3> v{}, wxr{}, axr{}, wxv{};
-  mju_cross(wxr.data(), vel, r.data());
-  for (std::size_t k = 0; k < 3; ++k) v[k] = vel[3 + k] + wxr[k];
-  mju_cross(axr.data(), acc, r.data());
-  mju_cross(wxv.data(), vel, v.data());
-  std::array<double, 3> a{};
+  const Vector3 r = {p[0] - c[0], p[1] - c[1], p[2] - c[2]};
+  const Vector3 wxr = cross(vel, r.data());
+  const Vector3 v = {vel[3] + wxr[0], vel[4] + wxr[1], vel[5] + wxr[2]};
+  const Vector3 axr = cross(acc, r.data());
+  const Vector3 wxv = cross(vel, v.data());
   for (std::size_t k = 0; k < 3; ++k) {
-    a[k] = acc[3 + k] + axr[k] + wxv[k] + m->opt.gravity[k];
+    bias[k] = acc[3 + k] + axr[k] + wxv[k] + m->opt.gravity[k];
   }
-  return a;
+  if (velocity) *velocity = v;
 }
 
-void ControlModel::update_points() noexcept {
-  const mjModel* m = mj_->model.get();
+void ControlModel::update_positions() noexcept {
   const mjData* d = mj_->data.get();
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    Kinematics3& out = points_[i];
-    const int site = point_sites_[i];
-    const int body = m->site_bodyid[site];
-    std::copy_n(d->site_xpos + 3 * site, 3, out.position.data());
-    out.position[2] -= point_radii_[i];
-    mj_jac(m, d, out.jacobian.data(), nullptr, out.position.data(), body);
+    const Anchor& a = anchors_[i];
+    const double* R = d->xmat + 9 * a.body;
     for (std::size_t k = 0; k < 3; ++k) {
-      out.velocity[k] = mju_dot(out.jacobian.data() + k * static_cast<std::size_t>(nv_), d->qvel, nv_);
+      points_[i].position[k] = d->xpos[3 * a.body + static_cast<int>(k)] + R[3 * k] * a.offset[0] +
+                               R[3 * k + 1] * a.offset[1] + R[3 * k + 2] * a.offset[2];
     }
-    out.bias = point_bias(body, out.position.data());
+    points_[i].position[2] -= a.radius;
+    fresh_[i] = 0;
   }
+}
+
+void ControlModel::fill_point(int index) const noexcept {
+  const auto i = static_cast<std::size_t>(index);
+  Kinematics3& out = points_[i];
+  mj_jac(mj_->model.get(), mj_->data.get(), out.jacobian.data(), nullptr, out.position.data(),
+         anchors_[i].body);
+  point_motion(anchors_[i].body, out.position.data(), &out.velocity, out.bias);
+  fresh_[i] = 1;
 }
 
 void ControlModel::update_com_and_base() noexcept {
   const mjModel* m = mj_->model.get();
   mjData* d = mj_->data.get();
-  const auto n = static_cast<std::size_t>(nv_);
   std::copy_n(d->subtree_com + 3 * base_body_, 3, com_.position.data());
   mj_jacSubtreeCom(m, d, com_.jacobian.data(), base_body_);
   com_.bias = {0.0, 0.0, 0.0};
   momentum_ = {};
   for (int b = base_body_; b < m->nbody; ++b) {
     if (m->body_rootid[b] != base_body_) continue;
-    const std::array<double, 3> a = point_bias(b, d->xipos + 3 * b);
-    for (std::size_t k = 0; k < 3; ++k) com_.bias[k] += m->body_mass[b] / mass_ * a[k];
+    Vector3 a{};
+    point_motion(b, d->xipos + 3 * b, nullptr, a);
+    const double share = m->body_mass[b] / mass_;
+    for (std::size_t k = 0; k < 3; ++k) com_.bias[k] += share * a[k];
     add_momentum(d->cinert + 10 * b, d->cvel + 6 * b, momentum_);
   }
   mj_jacBody(m, d, nullptr, base_.jacobian.data(), base_body_);
   std::copy_n(d->xmat + 9 * base_body_, 9, R_WB_.data());
   for (std::size_t k = 0; k < 3; ++k) {
-    com_.velocity[k] = mju_dot(com_.jacobian.data() + k * n, d->qvel, nv_);
-    base_.velocity[k] = mju_dot(base_.jacobian.data() + k * n, d->qvel, nv_);
+    com_.velocity[k] = momentum_[k] / mass_;
+    base_.velocity[k] = d->cvel[6 * base_body_ + static_cast<int>(k)];
     base_.bias[k] = d->cacc[6 * base_body_ + static_cast<int>(k)];
     base_.position[k] = state_.p_WB[k];
   }

@@ -53,8 +53,13 @@ class ControlModel {
 
   // Points: the robot's contacts in order, then its named points. Contact points are material
   // points of the foot at this instant.
+  // Positions are always there; the rest of a named point is computed when it is first asked for.
   const Kinematics3& point(int index) const noexcept {
+    if (fresh_[static_cast<std::size_t>(index)] == 0) fill_point(index);
     return points_[static_cast<std::size_t>(index)];
+  }
+  const std::array<double, 3>& point_position(int index) const noexcept {
+    return points_[static_cast<std::size_t>(index)].position;
   }
   const Kinematics3& com() const noexcept { return com_; }
   // Angular velocity of the floating base, world axes: velocity = ω, bias = J̇_ω q̇.
@@ -72,9 +77,17 @@ class ControlModel {
 
  private:
   struct Mujoco;
-  void update_points() noexcept;
+  // A point's place on its link.
+  struct Anchor {
+    int body = 0;
+    std::array<double, 3> offset{};  // m, link frame
+    double radius = 0.0;             // m, below it lies the contact point
+  };
+  void update_positions() noexcept;
+  void fill_point(int index) const noexcept;
   void update_com_and_base() noexcept;
-  std::array<double, 3> point_bias(int body, const double* p) const noexcept;
+  void point_motion(int body, const double* p, std::array<double, 3>* velocity,
+                    std::array<double, 3>& bias) const noexcept;
 
   std::unique_ptr<Mujoco> mj_;
   int nv_ = 0;
@@ -83,9 +96,9 @@ class ControlModel {
   double mass_ = 0.0;
   double gravity_ = 9.81;
   State state_;
-  std::vector<int> point_sites_;
-  std::vector<double> point_radii_;
-  std::vector<Kinematics3> points_;
+  std::vector<Anchor> anchors_;
+  mutable std::vector<Kinematics3> points_;   // Jacobians of named points are filled on demand
+  mutable std::vector<unsigned char> fresh_;  // which of them are of the state given last
   Kinematics3 com_;
   Kinematics3 base_;
   std::array<double, 9> R_WB_{};

@@ -9,27 +9,32 @@ namespace footfall::model {
 // of its ancestors, nearest first).
 struct TreeFactor {
   int n = 0;
-  const double* entries = nullptr;          // qLD
-  const int* row_start = nullptr;           // n, index of row i's diagonal in entries
-  const int* parent = nullptr;              // n, parent coordinate, -1 at the root
-  const double* diag_sqrt_inv = nullptr;    // n, 1/sqrt(D_i)
+  const double* entries = nullptr;        // qLD
+  const int* row_start = nullptr;         // n, index of row i's diagonal in entries
+  const int* parent = nullptr;            // n, parent coordinate, -1 at the root
+  const double* diag_sqrt_inv = nullptr;  // n, 1/sqrt(D_i)
 };
 
-// X <- D^{-1/2} L^{-T} X for a row-major n x columns block: then Xᵀ Y = (X₀)ᵀ A⁻¹ Y₀.
+// Two doubles in one register; any address.
+using DoublePair = double __attribute__((vector_size(16), aligned(8), may_alias));
+
+// X <- D^{-1/2} L^{-T} X for a row-major n x columns block: then Xᵀ Y = (X₀)ᵀ A⁻¹ Y₀. An odd count
+// of columns takes the next one along: the block needs an even stride.
 inline void whiten(const TreeFactor& f, double* x, int columns, int stride) noexcept {
+  const int pairs = (columns + 1) / 2;
   for (int i = f.n - 1; i >= 0; --i) {
-    const double* xi = x + i * stride;
-    int entry = f.row_start[i] + 1;
+    const auto* xi = reinterpret_cast<const DoublePair*>(x + i * stride);
+    const double* entry = f.entries + f.row_start[i] + 1;
     for (int j = f.parent[i]; j >= 0; j = f.parent[j], ++entry) {
-      const double l = f.entries[entry];
-      double* xj = x + j * stride;
-      for (int c = 0; c < columns; ++c) xj[c] -= l * xi[c];
+      const DoublePair l = {*entry, *entry};
+      auto* xj = reinterpret_cast<DoublePair*>(x + j * stride);
+      for (int c = 0; c < pairs; ++c) xj[c] -= l * xi[c];
     }
   }
   for (int i = 0; i < f.n; ++i) {
-    double* xi = x + i * stride;
-    const double d = f.diag_sqrt_inv[i];
-    for (int c = 0; c < columns; ++c) xi[c] *= d;
+    auto* xi = reinterpret_cast<DoublePair*>(x + i * stride);
+    const DoublePair d = {f.diag_sqrt_inv[i], f.diag_sqrt_inv[i]};
+    for (int c = 0; c < pairs; ++c) xi[c] *= d;
   }
 }
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "core/mujoco_errors.h"
+#include "model/mjcf.h"
 #include "sim/film_context.h"
 
 namespace footfall::sim {
@@ -29,24 +29,6 @@ struct DeleteModel {
 struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
-
-// mjModel of an XML text; its includes are found by their absolute paths.
-std::unique_ptr<mjModel, DeleteModel> load(const std::string& xml, const std::string& mjcf) {
-  const auto vfs = std::make_unique<mjVFS>();  // 2 MB: not on the stack
-  mj_defaultVFS(vfs.get());
-  mj_makeEmptyFileVFS(vfs.get(), "film.xml", static_cast<int>(xml.size()));
-  std::memcpy(vfs->filedata[0], xml.data(), xml.size());
-  std::array<char, 1000> error{};
-  std::unique_ptr<mjModel, DeleteModel> model(
-      mj_loadXML("film.xml", vfs.get(), error.data(), static_cast<int>(error.size())));
-  mj_deleteVFS(vfs.get());
-  if (!model) {
-    std::string text = error.data();
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    throw std::runtime_error("cannot render '" + mjcf + "': " + text);
-  }
-  return model;
-}
 
 void add_arrow(mjvScene& scene, const FilmArrow& arrow) {
   const double force = std::hypot(arrow.force[0], arrow.force[1], arrow.force[2]);
@@ -109,7 +91,7 @@ struct FilmRenderer::Impl {
   std::vector<std::uint8_t> bottom_up;
 
   Impl(const std::string& mjcf, int width, int height, FilmQuality quality)
-      : model(load(film_scene(mjcf, quality), mjcf)), viewport{0, 0, width, height} {
+      : model(model::compile_mjcf(film_scene(mjcf, quality), mjcf)), viewport{0, 0, width, height} {
     model->vis.global.offwidth = width;
     model->vis.global.offheight = height;
     data.reset(mj_makeData(model.get()));
@@ -175,7 +157,6 @@ struct FilmRenderer::Impl {
 };
 
 FilmRenderer::FilmRenderer(const std::string& mjcf, int width, int height, FilmQuality quality) {
-  core::install_mujoco_error_handlers();
   if (!std::filesystem::is_regular_file(mjcf)) {
     throw std::runtime_error("cannot render '" + mjcf + "': no such file");
   }

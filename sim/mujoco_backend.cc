@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "core/mujoco_errors.h"
@@ -32,9 +33,9 @@ int foot_geom(const mjModel* m, const mjData* d, int site) {
 }  // namespace
 
 MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world,
-                             std::uint64_t /*seed: no imperfection is random yet*/)
-    : robot_(robot), world_(world) {
-  model_ = model::compile_mjcf(scene_xml(robot, world, false), robot.model_path);
+                             std::uint64_t seed)
+    : robot_(robot), world_(world), seed_(seed) {
+  model_ = model::compile_mjcf(scene_xml(robot, world), robot.model_path);
   data_ = mj_makeData(model_);
   mj_forward(model_, data_);
   for (const model::JointDescription& j : robot.joints) {
@@ -86,6 +87,10 @@ void MujocoBackend::place_at_posture() {
     lowest = std::min(lowest, data_->site_xpos[3 * site + 2] - c.radius);
   }
   if (!robot_.contacts.empty()) data_->qpos[2] -= lowest;
+  // Nobody lets go of a robot at rest to the last digit: the seed decides how it starts.
+  std::mt19937_64 random(seed_);
+  std::normal_distribution<double> velocity(0.0, 1.0);
+  for (int k = 0; k < 2; ++k) data_->qvel[k] = world_.start_velocity * velocity(random);
   mj_forward(model_, data_);
 }
 

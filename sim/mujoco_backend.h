@@ -67,6 +67,7 @@ class MujocoBackend final : public hal::Hardware {
 
   const model::RobotDescription& robot_;
   WorldDescription world_;
+  std::uint64_t seed_;
   mjModel_* model_ = nullptr;
   mjData_* data_ = nullptr;
   std::vector<int> qpos_, dof_, actuator_;  // by joint of the robot file

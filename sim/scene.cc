@@ -39,7 +39,7 @@ std::string terrain_xml(const WorldDescription& world) {
   for (const TerrainBox& box : world.terrain) {
     xml += fmt::format(
         "<geom name=\"terrain_{}\" type=\"box\" pos=\"{:.17g} {:.17g} {:.17g}\" "
-        "size=\"{:.17g} {:.17g} {:.17g}\" rgba=\".62 .6 .55 1\" {}/>\n",
+        "size=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
         index++, box.at[0], box.at[1], 0.5 * box.size[2], 0.5 * box.size[0], 0.5 * box.size[1],
         0.5 * box.size[2], contact_attributes(world));
   }
@@ -48,33 +48,20 @@ std::string terrain_xml(const WorldDescription& world) {
 
 }  // namespace
 
-std::string scene_xml(const model::RobotDescription& robot, const WorldDescription& world,
-                      bool with_visuals) {
+std::string scene_xml(const model::RobotDescription& robot, const WorldDescription& world) {
   const PhysicsSettings& p = world.physics;
   const double timestep = robot.period_s() / p.steps_per_tick;
   std::string xml = "<mujoco model=\"footfall\">\n";
-  if (!with_visuals) xml += "<compiler discardvisual=\"true\"/>\n";
+  xml += "<compiler discardvisual=\"true\"/>\n";
   xml += fmt::format(
       "<option timestep=\"{:.17g}\" integrator=\"{}\" solver=\"{}\" cone=\"{}\" "
       "impratio=\"{:.17g}\" iterations=\"{}\" tolerance=\"{:.17g}\"/>\n",
       timestep, integrator_name(p.integrator), solver_name(p.solver),
       p.cone == Cone::elliptic ? "elliptic" : "pyramidal", p.impratio, p.iterations, p.tolerance);
   xml += fmt::format("<include file=\"{}\"/>\n", robot.model_path);
-  if (with_visuals) {
-    xml +=
-        "<visual><headlight ambient=\".45 .45 .45\" diffuse=\".45 .45 .45\" specular=\".1 .1 .1\"/>"
-        "<map znear=\".02\"/></visual>\n"
-        "<asset><texture name=\"sky\" type=\"skybox\" builtin=\"gradient\" rgb1=\".86 .90 .95\" "
-        "rgb2=\".55 .65 .78\" width=\"64\" height=\"384\"/>"
-        "<texture name=\"floor\" type=\"2d\" builtin=\"checker\" rgb1=\".80 .81 .83\" "
-        "rgb2=\".70 .72 .75\" width=\"256\" height=\"256\"/>"
-        "<material name=\"floor\" texture=\"floor\" texrepeat=\"2 2\" texuniform=\"true\" "
-        "reflectance=\".05\"/></asset>\n";
-  }
   xml += "<worldbody>\n";
-  if (with_visuals) xml += "<light pos=\"1 -2 4\" dir=\"-.25 .45 -.85\" diffuse=\".5 .5 .5\"/>\n";
-  xml += fmt::format("<geom name=\"ground\" type=\"plane\" size=\"0 0 .5\" {} {}/>\n",
-                     contact_attributes(world), with_visuals ? "material=\"floor\"" : "");
+  xml += fmt::format("<geom name=\"ground\" type=\"plane\" size=\"0 0 .5\" {}/>\n",
+                     contact_attributes(world));
   xml += terrain_xml(world);
   xml += "</worldbody>\n</mujoco>\n";
   return xml;

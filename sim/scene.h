@@ -8,9 +8,8 @@
 
 namespace footfall::sim {
 
-// A whole MJCF document. `with_visuals` keeps shapes that are only seen (film, viewer); physics
-// leaves them out, they cost two thirds of a step.
-std::string scene_xml(const model::RobotDescription& robot, const WorldDescription& world,
-                      bool with_visuals);
+// A whole MJCF document for physics: shapes that are only seen are left out, they would cost two
+// thirds of a step.
+std::string scene_xml(const model::RobotDescription& robot, const WorldDescription& world);
 
 }  // namespace footfall::sim

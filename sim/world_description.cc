@@ -33,7 +33,7 @@ class WorldLoader {
     if (!core::check_kind(root, "world", 1, diagnostics_)) return std::move(world_);
     core::check_keys(root,
                      {"world", "name", "doc", "ground", "surface", "actuators", "sensors",
-                      "control_model", "constraints", "planner_latency", "physics"},
+                      "control_model", "constraints", "planner_latency", "start", "physics"},
                      diagnostics_);
     read_head(root);
     if (const YamlNode* node = root.find("ground")) read_ground(*node);
@@ -55,6 +55,7 @@ class WorldLoader {
     if (const YamlNode* node = root.find("doc")) {
       world_.doc = core::read_text(*node, diagnostics_).value_or("");
     }
+    if (const YamlNode* node = root.find("start")) read_start(*node);
     read_bounded(root, "planner_latency", core::kTime, 0.0, kInfinity, world_.planner_latency);
   }
 
@@ -129,6 +130,12 @@ class WorldLoader {
       }
       world_.surface.push_back(ramp);
     }
+  }
+
+  void read_start(const YamlNode& node) {
+    if (!core::expect_map(node, "a map", diagnostics_)) return;
+    core::check_keys(node, {"velocity"}, diagnostics_);
+    read_bounded(node, "velocity", core::kVelocity, 0.0, 10.0, world_.start_velocity);
   }
 
   void read_actuators(const YamlNode& node) {

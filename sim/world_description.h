@@ -91,6 +91,7 @@ struct WorldDescription {
                                         // `mass: "+5 %"` is mass_scale 1.05
   std::vector<ConstraintName> constraints;
   double planner_latency = 2e-3;  // s, in lock-step
+  double start_velocity = 0.0;    // m/s, standard deviation of the base's horizontal velocity at start
   PhysicsSettings physics;
 };
 

@@ -31,23 +31,23 @@ struct AxisCommand {
 };
 
 struct TaskCommand {
-  int instance = 0;           // identity for integral, logs: index into Behavior::task_instances
+  int instance = 0;  // identity for integral, logs: index into Behavior::task_instances
   TaskType type = TaskType::com_position;
-  int point = -1;             // index into the control model's points, for point tasks
+  int point = -1;  // index into the control model's points, for point tasks
   Frame frame = Frame::world;
-  int priority = 1;           // smaller acts first; equal ones form one compound task
-  double weight = 1.0;        // inside a level, matters only where the level is over-determined
+  int priority = 1;     // smaller acts first; equal ones form one compound task
+  double weight = 1.0;  // inside a level, matters only where the level is over-determined
   double acceleration_limit = 0.0;  // m/s^2 or rad/s^2 on each commanded axis; 0: none
   double integral_limit = 0.0;      // clamp of |integral of error|; 0: none
-  int first_axis = 0;         // into ControlSet::axes
+  int first_axis = 0;               // into ControlSet::axes
   int axis_count = 0;
-  bool fresh = false;         // in force since this tick: the integral starts at 0
+  bool fresh = false;  // in force since this tick: the integral starts at 0
 };
 
 // Tension between two contacts. Positive pushes the contacts apart.
 struct InternalCommand {
-  int instance = 0;        // index into Behavior::internal_instances
-  int contact_a = 0;       // contact indices of the robot
+  int instance = 0;   // index into Behavior::internal_instances
+  int contact_a = 0;  // contact indices of the robot
   int contact_b = 0;
   double reference = 0.0;  // N, force at each contact (`mean` convention)
   double feedback = 0.0;   // K_F on the measured force
@@ -73,10 +73,10 @@ enum class TransitionForm : std::uint8_t {
 
 // The machine's answer for a tick.
 struct ActiveControl {
-  ControlSet primary;           // of the active configuration
-  bool has_other = false;       // a contact transition is under way
-  ControlSet other;             // the stack left (releases) or the one to come (loads)
-  double other_weight = 0.0;    // 0..1, of `other`
+  ControlSet primary;         // of the active configuration
+  bool has_other = false;     // a contact transition is under way
+  ControlSet other;           // the stack left (releases) or the one to come (loads)
+  double other_weight = 0.0;  // 0..1, of `other`
   TransitionForm form = TransitionForm::continuous;
   bool transition_entered = false;  // first tick of the transition (frozen form samples here)
   int moving_contact_count = 0;     // feet released or loaded

@@ -8,31 +8,54 @@
 namespace footfall::tasks {
 namespace {
 
+// Two doubles that the compiler keeps in one register; any address.
+using Pair = double __attribute__((vector_size(16), aligned(8), may_alias));
+
+// Columns [c, c + 2 kPairs): their products with v stay in registers between the two passes.
+template <int kPairs>
+inline void reflect_block(double* first_row, int stride, int rows, const double* v,
+                          double beta) noexcept {
+  Pair w[kPairs] = {};
+  const double* x = first_row;
+  for (int r = 0; r < rows; ++r, x += stride) {
+    const Pair vr = {v[r], v[r]};
+    for (int p = 0; p < kPairs; ++p) w[p] += vr * reinterpret_cast<const Pair*>(x)[p];
+  }
+  const Pair scale = {beta, beta};
+  for (int p = 0; p < kPairs; ++p) w[p] *= scale;
+  double* y = first_row;
+  for (int r = 0; r < rows; ++r, y += stride) {
+    const Pair vr = {v[r], v[r]};
+    for (int p = 0; p < kPairs; ++p) reinterpret_cast<Pair*>(y)[p] -= vr * w[p];
+  }
+}
+
 // x -= beta v (vᵀ x) on rows [first, last) and columns [c0, c1); v[0] belongs to row `first`.
-void reflect(const Block& x, int first, int last, int c0, int c1, const double* v, double beta,
-             double* __restrict work) noexcept {
-  const int n = c1 - c0;
-  if (n <= 0) return;
-  {
-    const double v0 = v[0];
-    const double* __restrict xr = x.row(first) + c0;
-    for (int c = 0; c < n; ++c) work[c] = v0 * xr[c];
+void reflect(const Block& x, int first, int last, int c0, int c1, const double* v,
+             double beta) noexcept {
+  const int rows = last - first;
+  double* top = x.row(first);
+  int c = c0;
+  for (; c + 8 <= c1; c += 8) reflect_block<4>(top + c, x.stride, rows, v, beta);
+  if (c + 4 <= c1) {
+    reflect_block<2>(top + c, x.stride, rows, v, beta);
+    c += 4;
   }
-  for (int r = first + 1; r < last; ++r) {
-    const double vr = v[r - first];
-    const double* __restrict xr = x.row(r) + c0;
-    for (int c = 0; c < n; ++c) work[c] += vr * xr[c];
+  if (c + 2 <= c1) {
+    reflect_block<1>(top + c, x.stride, rows, v, beta);
+    c += 2;
   }
-  for (int r = first; r < last; ++r) {
-    const double s = beta * v[r - first];
-    double* __restrict xr = x.row(r) + c0;
-    for (int c = 0; c < n; ++c) xr[c] -= s * work[c];
-  }
+  if (c == c1) return;
+  double w = 0.0;
+  for (int r = 0; r < rows; ++r) w += v[r] * top[r * x.stride + c];
+  w *= beta;
+  for (int r = 0; r < rows; ++r) top[r * x.stride + c] -= w * v[r];
 }
 
 // Makes the reflector of column c over rows [first, last): v (v[0] at row first) and beta; writes
 // the resulting column (alpha, 0, ...). Returns |alpha|.
-double make_reflector(const Block& x, int first, int last, int c, double* v, double* beta) noexcept {
+double make_reflector(const Block& x, int first, int last, int c, double* v,
+                      double* beta) noexcept {
   double norm2 = 0.0;
   for (int r = first; r < last; ++r) {
     v[r - first] = x.row(r)[c];
@@ -40,9 +63,9 @@ double make_reflector(const Block& x, int first, int last, int c, double* v, dou
   }
   const double norm = std::sqrt(norm2);
   const double alpha = v[0] > 0.0 ? -norm : norm;
-  const double vtv = 2.0 * (norm2 - alpha * v[0]);
+  const double half_vtv = norm2 - alpha * v[0];
   v[0] -= alpha;
-  *beta = vtv > 0.0 ? 2.0 / vtv : 0.0;
+  *beta = half_vtv > 0.0 ? 1.0 / half_vtv : 0.0;
   x.row(first)[c] = alpha;
   for (int r = first + 1; r < last; ++r) x.row(r)[c] = 0.0;
   return norm;
@@ -56,16 +79,31 @@ void swap_columns(const Block& x, int rows, int a, int b) noexcept {
 int choose_pivot(const Block& x, int first, const QrRange& range, const RankRule& rule,
                  const double* norm2, int next, double* __restrict remaining) noexcept {
   const int n = range.col_last - next;
-  std::fill_n(remaining, n, 0.0);
-  for (int r = first; r < range.row_last; ++r) {
-    const double* __restrict xr = x.row(r) + next;
-    for (int c = 0; c < n; ++c) remaining[c] += xr[c] * xr[c];
+  const int rows = range.row_last - first;
+  const double* top = x.row(first) + next;
+  int done = 0;
+  for (; done + 2 <= n; done += 2) {
+    Pair sum = {};
+    const double* xr = top + done;
+    for (int r = 0; r < rows; ++r, xr += x.stride) {
+      const Pair v = *reinterpret_cast<const Pair*>(xr);
+      sum += v * v;
+    }
+    *reinterpret_cast<Pair*>(remaining + done) = sum;
   }
+  if (done < n) {
+    remaining[done] = 0.0;
+    for (int r = 0; r < rows; ++r) {
+      const double v = top[r * x.stride + done];
+      remaining[done] += v * v;
+    }
+  }
+  const double tolerance2 = rule.tolerance * rule.tolerance;
+  const double floor2 = rule.floor * rule.floor;
   int best = -1;
   double best_norm = 0.0;
   for (int c = 0; c < n; ++c) {
-    const double limit =
-        std::max(rule.tolerance * rule.tolerance * norm2[next + c], rule.floor * rule.floor);
+    const double limit = std::max(tolerance2 * norm2[next + c], floor2);
     if (remaining[c] > limit && remaining[c] > best_norm) {
       best = next + c;
       best_norm = remaining[c];
@@ -115,7 +153,7 @@ int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* 
     double* beta = keep ? keep->beta + keep->count : &local_beta;
     const double size = make_reflector(x, first, range.row_last, c, v, beta);
     if (keep) ++keep->count;
-    reflect(x, first, range.row_last, c + 1, range.col_end, v, *beta, work);
+    reflect(x, first, range.row_last, c + 1, range.col_end, v, *beta);
     largest = std::max(largest, size);
     smallest = rank == 0 ? size : std::min(smallest, size);
   }
@@ -132,8 +170,8 @@ int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule&
                         Reflectors* keep, double* condition, const LevelScratch& scratch) noexcept {
   const int m = level.col_last - level.col_first;
   const int row_first = level.row0 + level.done;
-  const QrRange range = {row_first,       level.row0 + level.dims, level.col_first,
-                         level.col_last,  level.col_end,           level.swap_rows};
+  const QrRange range = {row_first,      level.row0 + level.dims, level.col_first,
+                         level.col_last, level.col_end,           level.swap_rows};
   const int k = pivoted_qr(x, range, rule, order, norm2, keep, condition, scratch.work);
   for (int i = 0; i < m; ++i) {
     const int c = level.col_first + i;
@@ -164,11 +202,10 @@ int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule&
 
 void least_squares(const Block& m, int rows, int cols, double* y, double* work) noexcept {
   double* v = work;
-  double* w = work + rows;
   for (int c = 0; c < cols; ++c) {
     double beta = 0.0;
     make_reflector(m, c, rows, c, v, &beta);
-    reflect(m, c, rows, c + 1, cols + 1, v, beta, w);
+    reflect(m, c, rows, c + 1, cols + 1, v, beta);
   }
   for (int i = cols - 1; i >= 0; --i) {
     double value = m.row(i)[cols];
@@ -177,25 +214,13 @@ void least_squares(const Block& m, int rows, int cols, double* y, double* work) 
   }
 }
 
-void orthogonal_factor(const Block& m, int rows, int cols, double* V, double* work) noexcept {
-  const Block q = {V, rows};
-  for (int r = 0; r < rows; ++r) {
-    std::fill_n(q.row(r), rows, 0.0);
-    q.row(r)[r] = 1.0;
-  }
-  double* v = work;
-  double* w = work + rows;
+void orthogonal_factor(const Block& m, int rows, int cols, Reflectors* keep) noexcept {
   for (int c = 0; c < cols; ++c) {
-    double beta = 0.0;
-    make_reflector(m, c, rows, c, v, &beta);
-    reflect(m, c, rows, c + 1, cols, v, beta, w);
-    // V <- V H, row by row.
-    for (int r = 0; r < rows; ++r) {
-      double s = 0.0;
-      for (int k = c; k < rows; ++k) s += q.row(r)[k] * v[k - c];
-      s *= beta;
-      for (int k = c; k < rows; ++k) q.row(r)[k] -= s * v[k - c];
-    }
+    double* v = keep->v + keep->count * keep->stride;
+    double* beta = keep->beta + keep->count;
+    make_reflector(m, c, rows, c, v, beta);
+    ++keep->count;
+    reflect(m, c, rows, c + 1, cols, v, *beta);
   }
 }
 

@@ -1,6 +1,6 @@
-// Small dense kernels on row-major blocks for the whole-body controller: pivoted Householder QR that
-// carries further columns along, and least-squares levels in a cascade of null spaces. Plain arrays:
-// no allocation, no bounds beyond the caller's.
+// Small dense kernels on row-major blocks for the whole-body controller: pivoted Householder QR
+// that carries further columns along, and least-squares levels in a cascade of null spaces. Plain
+// arrays: no allocation, no bounds beyond the caller's.
 #pragma once
 
 namespace footfall::tasks {
@@ -49,9 +49,9 @@ int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* 
 // squares sense. Columns up to col_end are carried along. rhs and weight are indexed by the
 // original column number (order[col]).
 struct LevelRange {
-  int row0 = 0;       // block row of coordinate 0
-  int dims = 0;       // coordinates in all
-  int done = 0;       // spent on earlier levels
+  int row0 = 0;  // block row of coordinate 0
+  int dims = 0;  // coordinates in all
+  int done = 0;  // spent on earlier levels
   int col_first = 0, col_last = 0, col_end = 0;
   int swap_rows = 0;
 };
@@ -68,8 +68,8 @@ int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule&
 // column `cols` is carried along and R y = (Qᵀ b) solved: least squares. y has `cols` entries.
 void least_squares(const Block& m, int rows, int cols, double* y, double* work) noexcept;
 
-// Orthogonal completion: QR of the (rows x cols) block (full column rank), V is rows x rows row-major
-// with M = V [T; 0]; T is left in the block's upper triangle.
-void orthogonal_factor(const Block& m, int rows, int cols, double* V, double* work) noexcept;
+// QR without pivoting of the (rows x cols) block (full column rank): M = V [T; 0] with T left in
+// the block's upper triangle and V kept as reflections: rotate_back gives V x, rotate gives Vᵀ x.
+void orthogonal_factor(const Block& m, int rows, int cols, Reflectors* keep) noexcept;
 
 }  // namespace footfall::tasks

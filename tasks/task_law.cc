@@ -18,9 +18,15 @@ Matrix3 rotation_of(double roll, double pitch, double yaw) noexcept {
   const double cr = std::cos(roll), sr = std::sin(roll);
   const double cp = std::cos(pitch), sp = std::sin(pitch);
   const double cy = std::cos(yaw), sy = std::sin(yaw);
-  return {cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
-          sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
-          -sp,     cp * sr,                cp * cr};
+  return {cy * cp,
+          cy * sp * sr - sy * cr,
+          cy * sp * cr + sy * sr,
+          sy * cp,
+          sy * sp * sr + cy * cr,
+          sy * sp * cr - cy * sr,
+          -sp,
+          cp * sr,
+          cp * cr};
 }
 
 // log(A Bᵀ): rotation vector in world axes that turns B into A.
@@ -130,7 +136,7 @@ double measured_position(const model::ControlModel& m, TaskType type, int point,
     case TaskType::body_orientation:
       return m.rpy()[at(axis)];
     case TaskType::point_position:
-      return m.point(point).position[at(axis)];
+      return m.point_position(point)[at(axis)];
     case TaskType::joint_posture:
     case TaskType::joint_damping:
       return m.state().q[at(axis)];
@@ -164,8 +170,8 @@ void evaluate_task(const TaskCommand& task, const AxisCommand* axes, const LawCo
         integral = std::clamp(integral, -task.integral_limit, task.integral_limit);
       }
     }
-    double u = a.ref_acc + a.kp * out[i].error + a.kd * (a.ref_vel - out[i].velocity) +
-               a.ki * integral;
+    double u =
+        a.ref_acc + a.kp * out[i].error + a.kd * (a.ref_vel - out[i].velocity) + a.ki * integral;
     if (task.acceleration_limit > 0.0) {
       u = std::clamp(u, -task.acceleration_limit, task.acceleration_limit);
     }

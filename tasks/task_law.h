@@ -1,9 +1,10 @@
 // The control law of one task: its Jacobian, its error, and the acceleration it asks for.
 //
-//   u = ẍ_ref + kp e + kd (ẋ_ref - ẋ) + ki ∫e dt,   |∫e| <= integral_limit, |u| <= acceleration_limit
+//   u = ẍ_ref + kp e + kd (ẋ_ref - ẋ) + ki ∫e dt,   |∫e| <= integral_limit, |u| <=
+//   acceleration_limit
 //
-// Source: [Kim16] eq. (37). Orientation errors are the logarithm of R_ref R_measuredᵀ on the axes of
-// the heading frame (z up, x where the torso points), so that pitch and roll keep their meaning
+// Source: [Kim16] eq. (37). Orientation errors are the logarithm of R_ref R_measuredᵀ on the axes
+// of the heading frame (z up, x where the torso points), so that pitch and roll keep their meaning
 // whatever the yaw; an axis that is not controlled takes its reference from what is measured.
 #pragma once
 
@@ -44,7 +45,7 @@ struct LawContext {
   const model::ControlModel* model = nullptr;
   TaskMemory* memory = nullptr;
   std::int64_t tick = 0;
-  double period = 0.0;     // s
+  double period = 0.0;      // s
   int stance_contact = -1;  // origin of Frame::stance
 };
 

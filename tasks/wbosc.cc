@@ -1,23 +1,22 @@
 // Reduced WBOSC; see wbosc.h for the law and the idea.
 #include "tasks/wbosc.h"
 
-#include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "tasks/dense_kernels.h"
 
 namespace footfall::tasks {
 namespace {
 
-std::size_t size(int n) { return static_cast<std::size_t>(std::max(n, 0)); }
+std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
-// Σ_r x(r, a) x(r, b) over rows [first, last).
-double column_dot(const Block& x, int first, int last, int a, int b) noexcept {
-  double sum = 0.0;
-  for (int r = first; r < last; ++r) sum += x.row(r)[a] * x.row(r)[b];
-  return sum;
+// A row of a matrix into a column of a row-major block.
+void scatter(int n, const double* __restrict from, double* __restrict to, int stride) noexcept {
+  for (int i = 0; i < n; ++i, to += stride) *to = from[i];
+}
+
+// to += s from.
+void add_scaled(int n, double s, const double* __restrict from, double* __restrict to) noexcept {
+  for (int i = 0; i < n; ++i) to[i] += s * from[i];
 }
 
 }  // namespace
@@ -46,7 +45,7 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   solution_.internal_measured.assign(size(sizes.internal_rows), 0.0);
   solution_.level_rank.assign(size(sizes.levels), 0);
   solution_.level_condition.assign(size(sizes.levels), 1.0);
-  column_norm2_.assign(size(columns), 0.0);
+  column_norm2_.assign(size(stride_), 0.0);
   contact_order_.assign(size(columns), 0);
   actuator_order_.assign(size(columns), 0);
   level_order_.assign(size(columns), 0);
@@ -60,9 +59,12 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   null_reflectors_.assign(size(sizes.na * sizes.na), 0.0);
   null_beta_.assign(size(sizes.na), 0.0);
   V_.assign(size(sizes.na * sizes.na), 0.0);
+  V_beta_.assign(size(sizes.na), 0.0);
   T_.assign(size(sizes.na * sizes.na), 0.0);
-  Cz_.assign(size(sizes.contact_rows * sizes.contact_rows), 0.0);
-  Ct_.assign(size(sizes.contact_rows * n), 0.0);
+  N_.assign(size(sizes.na * sizes.na), 0.0);
+  Vc_.assign(size(sizes.contact_rows * n), 0.0);
+  Vc_beta_.assign(size(n), 0.0);
+  Tc_.assign(size(sizes.contact_rows * n), 0.0);
   G_.assign(size(sizes.na * sizes.internal_rows), 0.0);
   alpha_.assign(size(sizes.na), 0.0);
   internal_norm2_.assign(size(sizes.internal_rows), 0.0);
@@ -92,19 +94,26 @@ void Wbosc::gather() noexcept {
   col_t_ = col_u_ + na;
   col_h_ = col_t_ + p.task_rows;
   columns_ = col_h_ + 1;
+  const double* Js = p.Js.data();
+  const double* J = p.J.data();
+  for (int c = 0; c < p.contact_rows; ++c) scatter(n, Js + c * n, x_.data() + c, stride_);
+  for (int c = 0; c < p.task_rows; ++c) scatter(n, J + c * n, x_.data() + col_t_ + c, stride_);
   for (int r = 0; r < n; ++r) {
     double* x = row(r);
-    for (int c = 0; c < p.contact_rows; ++c) x[c] = p.Js[size(c * n + r)];
-    std::fill(x + col_u_, x + col_t_, 0.0);
-    for (int c = 0; c < p.task_rows; ++c) x[col_t_ + c] = p.J[size(c * n + r)];
+    for (int j = col_u_; j < col_t_; ++j) x[j] = 0.0;
     x[col_h_] = p.bias[r] - p.external[size(r)];
   }
   for (int j = 0; j < na; ++j) row(p.actuated[j])[col_u_ + j] = 1.0;
   model::whiten(p.factor, x_.data(), columns_, stride_);
-  std::fill_n(column_norm2_.data(), columns_, 0.0);
-  for (int r = 0; r < n; ++r) {
-    const double* x = row(r);
-    for (int c = 0; c < columns_; ++c) column_norm2_[size(c)] += x[c] * x[c];
+  double* norm2 = column_norm2_.data();
+  for (int c = 0; c < columns_; c += 2) {  // the block and this array have an even size
+    model::DoublePair sum = {};
+    const double* x = x_.data() + c;
+    for (int r = 0; r < n; ++r, x += stride_) {
+      const auto v = *reinterpret_cast<const model::DoublePair*>(x);
+      sum += v * v;
+    }
+    *reinterpret_cast<model::DoublePair*>(norm2 + c) = sum;
   }
   for (int c = 0; c < columns_; ++c) {
     contact_order_[size(c)] = c;
@@ -133,27 +142,36 @@ void Wbosc::reduce_contacts() noexcept {
   }
 }
 
+Reflectors Wbosc::contact_rotation() noexcept {
+  return {Vc_.data(), Vc_beta_.data(), sizes_.contact_rows, solution_.contact_rank};
+}
+
+Reflectors Wbosc::actuation_rotation() noexcept {
+  return {V_.data(), V_beta_.data(), sizes_.na, solution_.actuation_rank};
+}
+
 // Redundant contacts: [R11 R12]ᵀ = V [T; 0], so that forces can be shared with least norm. A moving
 // link cannot keep all its points unaccelerated: a₁ = T⁻¹ V₁ᵀ (-Pᵀ J̇_s q̇) comes nearest.
 void Wbosc::reduce_redundant_contacts() noexcept {
   const int k = solution_.contact_rank;
   const int nc = problem_.contact_rows;
-  const Block t = {Ct_.data(), std::max(k, 1)};
+  const Block t = {Tc_.data(), std::max(k, 1)};
   for (int i = 0; i < nc; ++i) {
     for (int q = 0; q < k; ++q) t.row(i)[q] = row(q)[i];
   }
-  orthogonal_factor(t, nc, k, Cz_.data(), work_.data());
+  Reflectors keep = {Vc_.data(), Vc_beta_.data(), sizes_.contact_rows, 0};
+  orthogonal_factor(t, nc, k, &keep);
+  double* wanted = work_.data();
+  for (int c = 0; c < nc; ++c) wanted[c] = -problem_.Js_bias[size(contact_order_[size(c)])];
+  rotate(keep, nc, wanted);
   for (int i = k - 1; i >= 0; --i) {
-    double value = 0.0;
-    for (int c = 0; c < nc; ++c) {
-      value -= Cz_[size(c * nc + i)] * problem_.Js_bias[size(contact_order_[size(c)])];
-    }
+    double value = wanted[i];
     for (int q = i + 1; q < k; ++q) value -= t.row(i)[q] * a1_[size(q)];
     a1_[size(i)] = value / t.row(i)[i];
   }
 }
 
-// B P = Z [R11 R12]; its rank is φ's. Rank-deficient: [R11 R12]ᵀ = V [T; 0], V₂ spans L*.
+// B P = Z [R11 R12]; its rank is φ's. Rank-deficient: [R11 R12]ᵀ = V [T; 0], N = V₂ spans L*.
 void Wbosc::reduce_actuation() noexcept {
   const Block x = {x_.data(), stride_};
   const RankRule rule = {options_.rank_tolerance, options_.absolute_floor};
@@ -168,20 +186,26 @@ void Wbosc::reduce_actuation() noexcept {
   for (int j = 0; j < na; ++j) {
     for (int q = 0; q < r; ++q) t.row(j)[q] = x.row(k + q)[col_u_ + j];
   }
-  orthogonal_factor(t, na, r, V_.data(), work_.data());
+  Reflectors keep = {V_.data(), V_beta_.data(), na, 0};
+  orthogonal_factor(t, na, r, &keep);
+  for (int q = 0; q < na - r; ++q) {
+    double* null_vector = N_.data() + q * na;
+    std::fill_n(null_vector, na, 0.0);
+    null_vector[r + q] = 1.0;
+    rotate_back(keep, na, null_vector);
+  }
 }
 
 // rhs = u - J̇q̇ - T₁ᵀ a₁ + T₂ᵀ h₂, then one cascade over the levels in the range of B.
 void Wbosc::solve_levels() noexcept {
-  const Block x = {x_.data(), stride_};
   const int k = solution_.contact_rank;
-  for (int i = 0; i < problem_.task_rows; ++i) {
-    double value = problem_.J_bias[size(i)];
-    for (int q = 0; q < k; ++q) value += x.row(q)[col_t_ + i] * a1_[size(q)];
-    value -= column_dot(x, k, sizes_.nv, col_t_ + i, col_h_);
-    free_bias_[size(i)] = value;
-    rhs_[size(i)] = problem_.u[size(i)] - value;
+  const int rows = problem_.task_rows;
+  std::copy_n(problem_.J_bias.data(), rows, free_bias_.data());
+  for (int q = 0; q < sizes_.nv; ++q) {
+    const double weight = q < k ? a1_[size(q)] : -row(q)[col_h_];
+    add_scaled(rows, weight, row(q) + col_t_, free_bias_.data());
   }
+  for (int i = 0; i < rows; ++i) rhs_[size(i)] = problem_.u[size(i)] - free_bias_[size(i)];
   level_rank_sum_ = 0;
   std::fill_n(z_.data(), sizes_.nv, 0.0);
   int first = 0;
@@ -195,8 +219,12 @@ void Wbosc::solve_level(int level, int first, int last) noexcept {
   const Block x = {x_.data(), stride_};
   const RankRule rule = {options_.rank_tolerance, options_.absolute_floor};
   Reflectors keep = {reflectors_.data(), reflector_beta_.data(), sizes_.nv, level_reflectors_};
-  const LevelRange range = {solution_.contact_rank, solution_.actuation_rank, level_rank_sum_,
-                            col_t_ + first,         col_t_ + last,            col_h_,
+  const LevelRange range = {solution_.contact_rank,
+                            solution_.actuation_rank,
+                            level_rank_sum_,
+                            col_t_ + first,
+                            col_t_ + last,
+                            col_h_,
                             sizes_.nv};
   double* dense = work_.data() + 2 * (stride_ + sizes_.nv + sizes_.task_rows);
   const LevelScratch scratch = {y_.data(), dense, work_.data()};
@@ -224,126 +252,16 @@ void Wbosc::torque_from_range() noexcept {
       tau_p[i] = value / row(k + i)[col_u_ + i];
     }
   } else {
-    double* y = tau_p + na;
     for (int i = 0; i < r; ++i) {  // Tᵀ y = c
       double value = c[i];
-      for (int q = 0; q < i; ++q) value -= T_[size(q * r + i)] * y[q];
-      y[i] = value / T_[size(i * r + i)];
+      for (int q = 0; q < i; ++q) value -= T_[size(q * r + i)] * tau_p[q];
+      tau_p[i] = value / T_[size(i * r + i)];
     }
-    for (int j = 0; j < na; ++j) {
-      double value = 0.0;
-      for (int q = 0; q < r; ++q) value += V_[size(j * na + q)] * y[q];
-      tau_p[j] = value;
-    }
+    std::fill(tau_p + r, tau_p + na, 0.0);
+    rotate_back(actuation_rotation(), na, tau_p);
   }
   for (int j = 0; j < na; ++j) {
     solution_.tau[size(actuator_order_[size(col_u_ + j)])] = tau_p[j];
-  }
-}
-
-// f = R⁻¹ (a₁ - B₁ τ + h₁): ground on robot; of least norm where contacts are redundant.
-void Wbosc::contact_forces(const double* tau, double* f) noexcept {
-  const int k = solution_.contact_rank;
-  const int nc = problem_.contact_rows;
-  double* y = work_.data() + 2 * sizes_.na;
-  double* fp = y + nc + k;
-  for (int i = 0; i < k; ++i) {
-    const double* x = row(i);
-    double value = a1_[size(i)] + x[col_h_];
-    for (int j = 0; j < sizes_.na; ++j) {
-      value -= x[col_u_ + j] * tau[actuator_order_[size(col_u_ + j)]];
-    }
-    y[i] = value;
-  }
-  if (k == nc) {
-    for (int i = k - 1; i >= 0; --i) {
-      double value = y[i];
-      for (int q = i + 1; q < k; ++q) value -= row(i)[q] * fp[q];
-      fp[i] = value / row(i)[i];
-    }
-  } else {
-    for (int i = 0; i < k; ++i) {  // Tᵀ s = y
-      double value = y[i];
-      for (int q = 0; q < i; ++q) value -= Ct_[size(q * k + i)] * y[q];
-      y[i] = value / Ct_[size(i * k + i)];
-    }
-    for (int i = 0; i < nc; ++i) {
-      double value = 0.0;
-      for (int q = 0; q < k; ++q) value += Cz_[size(i * nc + q)] * y[q];
-      fp[i] = value;
-    }
-  }
-  for (int i = 0; i < nc; ++i) f[contact_order_[size(i)]] = fp[i];
-}
-
-// In the null space of B torques only change contact forces: W_int f(τ + N α) = F_int, named rows
-// first, the others in what those left.
-void Wbosc::add_internal_forces() noexcept {
-  const int na = sizes_.na;
-  const int nc = problem_.contact_rows;
-  const int r = solution_.actuation_rank;
-  const int nulls = na - r;
-  const int rows = problem_.internal_rows;
-  if (rows == 0) return;
-  double* f0 = forces_.data();
-  double* f1 = f0 + nc;
-  double* probe = f1 + nc;
-  contact_forces(solution_.tau.data(), f0);
-  std::fill_n(internal_norm2_.data(), rows, 0.0);
-  for (int q = 0; q < nulls; ++q) {  // column q of G = W_int ∂f/∂α_q, stored transposed
-    for (int j = 0; j < na; ++j) {
-      const int actuator = actuator_order_[size(col_u_ + j)];
-      probe[actuator] = solution_.tau[size(actuator)] + V_[size(j * na + r + q)];
-    }
-    contact_forces(probe, f1);
-    for (int i = 0; i < rows; ++i) {
-      double value = 0.0;
-      for (int c = 0; c < nc; ++c) value += problem_.W_int[size(i * nc + c)] * (f1[c] - f0[c]);
-      G_[size(q * rows + i)] = value;
-      internal_norm2_[size(i)] += value * value;
-    }
-  }
-  if (problem_.tau_measured) contact_forces(problem_.tau_measured, f1);
-  for (int i = 0; i < rows; ++i) {
-    double now = 0.0;
-    double measured = 0.0;
-    for (int c = 0; c < nc; ++c) {
-      now += problem_.W_int[size(i * nc + c)] * f0[c];
-      measured += problem_.W_int[size(i * nc + c)] * f1[c];
-    }
-    double wanted = problem_.F_int[size(i)];
-    if (problem_.tau_measured) wanted += problem_.K_F[size(i)] * (wanted - measured);
-    solution_.internal_measured[size(i)] = problem_.tau_measured ? measured : now;
-    rhs_[size(i)] = wanted - now;
-    internal_order_[size(i)] = i;
-  }
-  if (nulls > 0) add_null_torque(nulls, rows);
-}
-
-// Solves Gᵀ's two-level cascade for α and adds N α to the torque.
-void Wbosc::add_null_torque(int nulls, int rows) noexcept {
-  const int na = sizes_.na;
-  const int r = solution_.actuation_rank;
-  const Block g = {G_.data(), rows};
-  const RankRule rule = {options_.rank_tolerance, options_.absolute_floor};
-  Reflectors keep = {null_reflectors_.data(), null_beta_.data(), na, 0};
-  const LevelScratch scratch = {y_.data(), work_.data() + 2 * (stride_ + sizes_.nv + rows),
-                                work_.data()};
-  std::fill_n(alpha_.data(), nulls, 0.0);
-  int done = 0;
-  const std::array<int, 3> ends = {0, std::min(problem_.named_internal_rows, rows), rows};
-  for (std::size_t level = 1; level < ends.size(); ++level) {
-    if (ends[level] == ends[level - 1]) continue;
-    const LevelRange range = {0, nulls, done, ends[level - 1], ends[level], rows, nulls};
-    done += solve_cascade_level(g, range, rule, internal_order_.data(), internal_norm2_.data(),
-                                rhs_.data(), internal_weight_.data(), alpha_.data(), &keep, nullptr,
-                                scratch);
-  }
-  rotate_back(keep, nulls, alpha_.data());
-  for (int j = 0; j < na; ++j) {
-    double value = 0.0;
-    for (int q = 0; q < nulls; ++q) value += V_[size(j * na + r + q)] * alpha_[size(q)];
-    solution_.tau[size(actuator_order_[size(col_u_ + j)])] += value;
   }
 }
 
@@ -358,8 +276,7 @@ void Wbosc::finish() noexcept {
   for (int j = 0; j < na; ++j) {
     if (!std::isfinite(tau[j])) solution_.finite = false;
     if (!problem_.torque_limit) continue;
-    const double limited =
-        std::clamp(tau[j], -problem_.torque_limit[j], problem_.torque_limit[j]);
+    const double limited = std::clamp(tau[j], -problem_.torque_limit[j], problem_.torque_limit[j]);
     solution_.limited |= limited != tau[j];
     tau[j] = limited;
   }
@@ -373,40 +290,21 @@ void Wbosc::finish() noexcept {
     solution_.internal[size(i)] = value;
   }
   double* c = z_.data() + sizes_.nv;  // Zᵀ B τ, then in the levels' coordinates
+  const int* order = actuator_order_.data() + col_u_;
   for (int i = 0; i < r; ++i) {
+    const double* x = row(k + i) + col_u_;
     double value = 0.0;
-    for (int j = i; j < na; ++j) {
-      value += row(k + i)[col_u_ + j] * tau[actuator_order_[size(col_u_ + j)]];
-    }
+    for (int j = i; j < na; ++j) value += x[j] * tau[order[j]];
     c[i] = value;
   }
   rotate({reflectors_.data(), reflector_beta_.data(), sizes_.nv, level_reflectors_}, r, c);
+  double* gained = work_.data();
+  std::fill_n(gained, problem_.task_rows, 0.0);
+  for (int q = 0; q < r; ++q) add_scaled(problem_.task_rows, c[q], row(k + q) + col_t_, gained);
   for (int t = 0; t < problem_.task_rows; ++t) {
-    const int original = level_order_[size(col_t_ + t)];
-    double value = free_bias_[size(original)];
-    for (int q = 0; q < r; ++q) value += row(k + q)[col_t_ + t] * c[q];
-    solution_.achieved[size(original)] = value;
+    const std::size_t original = size(level_order_[size(col_t_ + t)]);
+    solution_.achieved[original] = free_bias_[original] + gained[t];
   }
-}
-
-// Gram matrix of J* in the metric of φ: rows of T in the range of B, whatever their rotation.
-void Wbosc::effective_inertia(int first, int last, double* lambda) const {
-  const int m = last - first;
-  const int k = solution_.contact_rank;
-  const int r = solution_.actuation_rank;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
-  for (int a = 0; a < problem_.task_rows; ++a) {
-    const int i = level_order_[size(col_t_ + a)] - first;
-    if (i < 0 || i >= m) continue;
-    for (int b = 0; b < problem_.task_rows; ++b) {
-      const int j = level_order_[size(col_t_ + b)] - first;
-      if (j < 0 || j >= m) continue;
-      for (int q = 0; q < r; ++q) gram(i, j) += row(k + q)[col_t_ + a] * row(k + q)[col_t_ + b];
-    }
-  }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod(gram);
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(lambda, m, m) =
-      cod.pseudoInverse();
 }
 
 }  // namespace footfall::tasks

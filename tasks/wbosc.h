@@ -15,13 +15,14 @@
 #include <vector>
 
 #include "model/tree_factor.h"
+#include "tasks/dense_kernels.h"
 
 namespace footfall::tasks {
 
 // Worst-case sizes; memory is allocated once.
 struct WboscSizes {
-  int nv = 0;             // generalised velocities
-  int na = 0;             // actuated ones
+  int nv = 0;  // generalised velocities
+  int na = 0;  // actuated ones
   int contact_rows = 0;
   int task_rows = 0;
   int levels = 0;
@@ -40,40 +41,40 @@ struct WboscOptions {
 // What to solve; the caller fills the used parts in place. Row-major.
 struct WboscProblem {
   model::TreeFactor factor;
-  const double* bias = nullptr;      // b + g, nv
-  const int* actuated = nullptr;     // na, generalised index of each actuator
+  const double* bias = nullptr;          // b + g, nv
+  const int* actuated = nullptr;         // na, generalised index of each actuator
   const double* torque_limit = nullptr;  // na, N m; nullptr: none
   int contact_rows = 0;
   int task_rows = 0;
   int levels = 0;
   int internal_rows = 0;
-  int named_internal_rows = 0;       // the first ones are met before the rest
-  std::vector<double> Js;            // contact_rows x nv
-  std::vector<double> Js_bias;       // J̇_s q̇
-  std::vector<double> J;             // task_rows x nv, levels one after the other
-  std::vector<double> J_bias;        // J̇ q̇
-  std::vector<double> u;             // commanded task acceleration
-  std::vector<double> weight;        // of a row's residual where its level is over-determined
-  std::vector<int> level_end;        // levels: one past the last row of each
-  std::vector<double> external;      // nv: known generalised force (0 unless set), e.g. Jᵀf of a foot
-  std::vector<double> W_int;         // internal_rows x contact_rows, acts on f (ground on robot)
-  std::vector<double> F_int;         // wanted W_int f
-  std::vector<double> K_F;           // feedback on W_int f(tau_measured), 0: none
+  int named_internal_rows = 0;   // the first ones are met before the rest
+  std::vector<double> Js;        // contact_rows x nv
+  std::vector<double> Js_bias;   // J̇_s q̇
+  std::vector<double> J;         // task_rows x nv, levels one after the other
+  std::vector<double> J_bias;    // J̇ q̇
+  std::vector<double> u;         // commanded task acceleration
+  std::vector<double> weight;    // of a row's residual where its level is over-determined
+  std::vector<int> level_end;    // levels: one past the last row of each
+  std::vector<double> external;  // nv: known generalised force (0 unless set), e.g. Jᵀf of a foot
+  std::vector<double> W_int;     // internal_rows x contact_rows, acts on f (ground on robot)
+  std::vector<double> F_int;     // wanted W_int f
+  std::vector<double> K_F;       // feedback on W_int f(tau_measured), 0: none
   const double* tau_measured = nullptr;  // na; nullptr: no feedback
 };
 
 struct WboscSolution {
-  std::vector<double> tau;           // na, after limits
-  std::vector<double> f;             // contact_rows: ground on robot, as the control law predicts it
-  std::vector<double> achieved;      // task_rows: J q̈ + J̇ q̇ under tau
-  std::vector<double> internal;      // internal_rows: W_int f under tau
+  std::vector<double> tau;       // na, after limits
+  std::vector<double> f;         // contact_rows: ground on robot, as the control law predicts it
+  std::vector<double> achieved;  // task_rows: J q̈ + J̇ q̇ under tau
+  std::vector<double> internal;  // internal_rows: W_int f under tau
   std::vector<double> internal_measured;  // internal_rows: W_int f under tau_measured
-  std::vector<int> level_rank;       // levels
+  std::vector<int> level_rank;            // levels
   std::vector<double> level_condition;  // levels: largest over smallest kept pivot; 1 without rows
   int contact_rank = 0;
-  int actuation_rank = 0;            // of φ; na - rank internal-force directions
-  bool limited = false;              // a torque limit acted
-  bool finite = true;                // false: tau is zero
+  int actuation_rank = 0;  // of φ; na - rank internal-force directions
+  bool limited = false;    // a torque limit acted
+  bool finite = true;      // false: tau is zero
 };
 
 class Wbosc {
@@ -103,6 +104,8 @@ class Wbosc {
   void add_null_torque(int nulls, int rows) noexcept;
   void finish() noexcept;
   void contact_forces(const double* tau, double* f) noexcept;
+  Reflectors actuation_rotation() noexcept;
+  Reflectors contact_rotation() noexcept;
   double* row(int r) noexcept { return x_.data() + r * stride_; }
   const double* row(int r) const noexcept { return x_.data() + r * stride_; }
 
@@ -116,20 +119,22 @@ class Wbosc {
   int stride_ = 0;
   int col_u_ = 0, col_t_ = 0, col_h_ = 0, columns_ = 0;
 
-  std::vector<double> column_norm2_;    // squared, after whitening: the yardstick of every rank
+  std::vector<double> column_norm2_;  // squared, after whitening: the yardstick of every rank
   std::vector<int> contact_order_, actuator_order_, level_order_;
-  std::vector<double> a1_;              // constrained acceleration, contact_rank
-  std::vector<double> z_;               // free acceleration in the rotated range of B
+  std::vector<double> a1_;  // constrained acceleration, contact_rank
+  std::vector<double> z_;   // free acceleration in the rotated range of B
   std::vector<double> rhs_, y_;
-  std::vector<double> free_bias_;       // J̇q̇ + T₁ᵀa₁ - T₂ᵀh₂: task acceleration without torque
-  std::vector<double> reflectors_;      // of the levels, one row of nv each
+  std::vector<double> free_bias_;  // J̇q̇ + T₁ᵀa₁ - T₂ᵀh₂: task acceleration without torque
+  std::vector<double> reflectors_;  // of the levels, one row of nv each
   std::vector<double> reflector_beta_;
   int level_reflectors_ = 0;
   std::vector<double> null_reflectors_, null_beta_;  // of the internal forces
-  std::vector<double> V_;               // na x na: row space of B, then its null space
-  std::vector<double> T_;               // na x na: triangular factor that goes with V
-  std::vector<double> Cz_, Ct_;         // the same pair for redundant contacts
-  std::vector<double> G_;               // null space x internal rows
+  // Complete factors where rank is lost, [R11 R12]ᵀ = V [T; 0], V as reflections: of B (its row
+  // space, then its null space) and of redundant contacts.
+  std::vector<double> V_, V_beta_, T_;
+  std::vector<double> Vc_, Vc_beta_, Tc_;
+  std::vector<double> N_;  // na - rank null vectors of B, one after the other
+  std::vector<double> G_;  // null space x internal rows
   std::vector<double> alpha_;
   std::vector<double> internal_norm2_, internal_weight_, forces_;
   std::vector<int> internal_order_;

@@ -11,7 +11,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 WboscSizes solver_sizes(const model::ControlModel& model, const ControllerSizes& sizes) {
   const int pairs = sizes.contacts * (sizes.contacts - 1) / 2;
-  return {model.nv(), model.joint_count(), 3 * sizes.contacts, sizes.task_rows, sizes.levels, pairs};
+  return {model.nv(),      model.joint_count(), 3 * sizes.contacts,
+          sizes.task_rows, sizes.levels,        pairs};
 }
 
 // Index of a robot contact within the set, -1 if it does not hold.
@@ -25,7 +26,8 @@ int place_in(const ControlSet& set, int contact) noexcept {
 bool named(const ControlSet& set, int a, int b) noexcept {
   for (int i = 0; i < set.internal_count; ++i) {
     const InternalCommand& c = set.internals[at(i)];
-    if ((c.contact_a == a && c.contact_b == b) || (c.contact_a == b && c.contact_b == a)) return true;
+    if ((c.contact_a == a && c.contact_b == b) || (c.contact_a == b && c.contact_b == a))
+      return true;
   }
   return false;
 }

@@ -4,8 +4,8 @@
 // Contact transitions ([Kim16] III-D, eqs (1)-(2)) have two forms:
 //  - continuous: both controllers at every tick on the same state and references,
 //      τ = (1 - w) τ_primary + w τ_other. Exact at both ends: w = 1 is the other controller, w = 0
-//      this one. It equals the corrected eq. (2) (docs/notation.md E8) whenever both controllers ask
-//      for the same task accelerations, and stays exact when they do not.
+//      this one. It equals the corrected eq. (2) (docs/notation.md E8) whenever both controllers
+//      ask for the same task accelerations, and stays exact when they do not.
 //  - frozen: the paper's. The moving foot's force f is taken from `other` once, at entry, and
 //      enters the primary law as a known force w f: τ = τ_primary(h - w J_swᵀ f).
 #pragma once
@@ -23,7 +23,7 @@ namespace footfall::tasks {
 
 struct ControllerSizes {
   int task_instances = 1;
-  int task_rows = 32;     // most rows of one control law
+  int task_rows = 32;  // most rows of one control law
   int levels = 8;
   int contacts = 4;
 };
@@ -36,13 +36,15 @@ struct TaskReport {
 
 // Valid until the next compute().
 struct ControllerResult {
-  std::array<double, core::kMaxJoints> tau{};                        // N m, after limits
-  std::array<std::array<double, 3>, core::kMaxContacts> force{};     // N, ground on robot, per robot contact
-  std::array<AxisEvaluation, core::kMaxAxes> axes{};                 // as primary.axes
-  std::array<double, core::kMaxAxes> achieved{};                     // as primary.axes; primary law alone
-  std::array<TaskReport, core::kMaxTasks> tasks{};                   // as primary.tasks
-  std::array<double, core::kMaxInternal> internal{};                 // N, mean convention, as primary.internals, predicted
-  std::array<double, core::kMaxInternal> internal_measured{};        // N, from measured joint torque
+  std::array<double, core::kMaxJoints> tau{};  // N m, after limits
+  std::array<std::array<double, 3>, core::kMaxContacts>
+      force{};                                        // N, ground on robot, per robot contact
+  std::array<AxisEvaluation, core::kMaxAxes> axes{};  // as primary.axes
+  std::array<double, core::kMaxAxes> achieved{};      // as primary.axes; primary law alone
+  std::array<TaskReport, core::kMaxTasks> tasks{};    // as primary.tasks
+  std::array<double, core::kMaxInternal>
+      internal{};  // N, mean convention, as primary.internals, predicted
+  std::array<double, core::kMaxInternal> internal_measured{};  // N, from measured joint torque
   bool limited = false;
   bool finite = true;
 };
@@ -63,13 +65,14 @@ class WholeBodyController {
   const Wbosc& primary() const noexcept { return primary_; }
 
  private:
-  void solve_law(Wbosc& solver, const ControlSet& set, std::int64_t tick, const double* tau_measured,
-                 AxisEvaluation* axes) noexcept;
+  void solve_law(Wbosc& solver, const ControlSet& set, std::int64_t tick,
+                 const double* tau_measured, AxisEvaluation* axes) noexcept;
   void assemble_contacts(WboscProblem& problem, const ControlSet& set) const noexcept;
   void assemble_tasks(WboscProblem& problem, const ControlSet& set, std::int64_t tick,
                       AxisEvaluation* axes) noexcept;
   void assemble_internal(WboscProblem& problem, const ControlSet& set) const noexcept;
-  void tension_row(WboscProblem& problem, const ControlSet& set, int row, int a, int b) const noexcept;
+  void tension_row(WboscProblem& problem, const ControlSet& set, int row, int a,
+                   int b) const noexcept;
   void sample_frozen_force(const ActiveControl& control) noexcept;
   void add_frozen_force(const ActiveControl& control) noexcept;
   void report(const ActiveControl& control) noexcept;

@@ -2,6 +2,7 @@
 #include "engine/log_writer.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -20,7 +21,9 @@ constexpr int kRows = 2000;
 constexpr std::int64_t kPeriod = 4'000'000;  // ns: 250 Hz
 
 std::string temporary(const std::string& name) {
-  return (std::filesystem::path(testing::TempDir()) / name).string();
+  return (std::filesystem::path(testing::TempDir()) /
+          ("footfall_" + std::to_string(getpid()) + name))
+      .string();
 }
 
 core::SignalTable small_table() {

@@ -66,7 +66,7 @@ class Report : public testing::Test {
     add("state", [=](double t) { return right(t) ? (std::fmod(t, 1.0) < 0.25 ? 0.0 : 1.0) : 2.0; });
     log_.events = {{0.5, "mark", "step", "n=1 <b>&</b>"}, {0.7, "fault", "fault.fall", ""}};
     options_.timing_json =
-        R"({"tick_us":{"p50":8.5},"histogram":{"edges_us":[0,10,20],"counts":[900,3]}})";
+        R"({"tick_us":{"p50":8.5},"percentiles":[{"part":0.5,"us":8.5},{"part":0.99,"us":15.25}],"histogram":{"edges_us":[0,10,20],"counts":[900,3]}})";
     options_.summary_json = R"({"end":"time","fell":false,"steps":19,"error":{"roll":
         {"rms":0.001,"max":0.0042}},"faults":{"fall":2},"goal_error_m":null})";
     options_.strip_png = {1, 2, 3};
@@ -130,6 +130,7 @@ TEST_F(Report, NumbersComeFromTheSummaryAndElseFromTheLog) {
   EXPECT_NE(page.find("<b>19</b><span>steps</span>"), std::string::npos);
   EXPECT_NE(page.find("<b>4.2 mrad</b>"), std::string::npos);
   EXPECT_NE(page.find("fall 2"), std::string::npos);
+  EXPECT_NE(page.find("99 % of the ticks within</th><td>15.25 µs"), std::string::npos);
   options_.summary_json = "not json";
   const std::string other = report_html(log_, options_);
   EXPECT_NE(other.find("<b>19</b><span>steps</span>"), std::string::npos);  // the last of `steps`

@@ -63,7 +63,8 @@ TEST_F(ModelError, AnotherOrderOfJointsIsRefused) {
 }
 
 TEST_F(ModelError, AModelWithoutAFloatingBaseIsRefused) {
-  write(R"(<mujoco><worldbody><body><joint name="hip"/><geom size="0.1"/></body></worldbody></mujoco>)");
+  write(
+      R"(<mujoco><worldbody><body><joint name="hip"/><geom size="0.1"/></body></worldbody></mujoco>)");
   EXPECT_THAT(message(), HasSubstr("must be the free joint of the floating base"));
 }
 

@@ -89,9 +89,12 @@ TEST_F(ControlModelOfHume, BiasAccelerationsAreTheDerivativeOfTheJacobians) {
     const auto com = model_.com().bias;
     const auto base = model_.base_rotation().bias;
     const auto knee = model_.point(5).bias;
-    const Vector3d com_fd = differenced_bias(s, [&]() -> auto& { return model_.com(); });
-    const Vector3d base_fd = differenced_bias(s, [&]() -> auto& { return model_.base_rotation(); });
-    const Vector3d knee_fd = differenced_bias(s, [&]() -> auto& { return model_.point(5); });
+    const Vector3d com_fd = differenced_bias(
+        s, [&]() -> auto& { return model_.com(); });
+    const Vector3d base_fd = differenced_bias(
+        s, [&]() -> auto& { return model_.base_rotation(); });
+    const Vector3d knee_fd = differenced_bias(
+        s, [&]() -> auto& { return model_.point(5); });
     for (int k = 0; k < 3; ++k) {
       const auto q = static_cast<std::size_t>(k);
       EXPECT_NEAR(com[q], com_fd(k), kDifference);
@@ -223,8 +226,10 @@ TEST_F(ControlModelOfHume, WhitenedColumnsMultiplyAsInTheInverseMassMatrix) {
     model_.update(random_state(robot_, random_));
     MatrixXd J(9, 12);
     J << jacobian(model_.point(0)), jacobian(model_.com()), jacobian(model_.base_rotation());
-    RowMajor X = J.transpose();
-    model::whiten(model_.factor(), X.data(), 9, 9);
+    RowMajor padded = RowMajor::Zero(12, 10);
+    padded.leftCols(9) = J.transpose();
+    model::whiten(model_.factor(), padded.data(), 9, 10);
+    const MatrixXd X = padded.leftCols(9);
     const MatrixXd expected = J * mass_matrix().partialPivLu().solve(J.transpose());
     EXPECT_LE((X.transpose() * X - expected).cwiseAbs().maxCoeff(),
               1e-11 * expected.cwiseAbs().maxCoeff());

@@ -69,8 +69,8 @@ class DartTwin {
 
   MatrixXd mass_matrix() const { return T_.transpose() * skeleton_->getMassMatrix() * T_; }
   VectorXd bias() const {
-    return T_.transpose() * (skeleton_->getCoriolisAndGravityForces() +
-                             skeleton_->getMassMatrix() * Tdot_nu_);
+    return T_.transpose() *
+           (skeleton_->getCoriolisAndGravityForces() + skeleton_->getMassMatrix() * Tdot_nu_);
   }
   double mass() const { return skeleton_->getMass(); }
   MatrixXd ours(const MatrixXd& J) const { return J * T_; }
@@ -95,7 +95,8 @@ class DartTwin {
     BodyNode* parent = m_->body_parentid[b] > 0 ? bodies_.at(m_->body_parentid[b]) : nullptr;
     BodyNode* node = nullptr;
     if (parent == nullptr) {
-      node = skeleton_->createJointAndBodyNodePair<dart::dynamics::FreeJoint>(nullptr, {}, body).second;
+      node = skeleton_->createJointAndBodyNodePair<dart::dynamics::FreeJoint>(nullptr, {}, body)
+                 .second;
     } else {
       const int j = m_->body_jntadr[b];
       dart::dynamics::RevoluteJoint::Properties joint;
@@ -103,11 +104,12 @@ class DartTwin {
       const double* axis = m_->jnt_axis + 3 * j;
       joint.mAxis = Vector3d(axis[0], axis[1], axis[2]);
       const Isometry3d at_joint = placement(m_->jnt_pos + 3 * j, nullptr);
-      joint.mT_ParentBodyToJoint = placement(m_->body_pos + 3 * b, m_->body_quat + 4 * b) * at_joint;
+      joint.mT_ParentBodyToJoint =
+          placement(m_->body_pos + 3 * b, m_->body_quat + 4 * b) * at_joint;
       joint.mT_ChildBodyToJoint = at_joint;
-      node = skeleton_
-                 ->createJointAndBodyNodePair<dart::dynamics::RevoluteJoint>(parent, joint, body)
-                 .second;
+      node =
+          skeleton_->createJointAndBodyNodePair<dart::dynamics::RevoluteJoint>(parent, joint, body)
+              .second;
     }
     const Isometry3d principal = placement(m_->body_ipos + 3 * b, m_->body_iquat + 4 * b);
     const double* d = m_->body_inertia + 3 * b;
@@ -184,7 +186,9 @@ TEST_F(ModelAgainstDart, CentreOfMassAndBaseRotationAgree) {
     const MatrixXd J = dart_.skeleton().getCOMLinearJacobian();
     const MatrixXd Jdot = dart_.skeleton().getCOMLinearJacobianDeriv();
     const Vector3d com = dart_.skeleton().getCOM();
-    expect_equal(Vector3d(model_.com().position[0], model_.com().position[1], model_.com().position[2]), com);
+    expect_equal(
+        Vector3d(model_.com().position[0], model_.com().position[1], model_.com().position[2]),
+        com);
     expect_equal(jacobian(model_.com()), dart_.ours(J));
     expect_equal(bias(model_.com()), dart_.bias_of(J, Jdot));
     BodyNode* torso = dart_.skeleton().getRootBodyNode();

@@ -2,6 +2,7 @@
 #include "sim/film.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -28,7 +29,10 @@ constexpr const char* kLeg = R"(<mujoco>
 </mujoco>)";
 
 std::string leg_file() {
-  const auto path = std::filesystem::path(testing::TempDir()) / "film_leg.xml";
+  // One file a test: they may run side by side.
+  const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+  const auto path =
+      std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + test + ".xml");
   std::ofstream(path) << kLeg;
   return path.string();
 }
@@ -104,7 +108,7 @@ TEST(Film, AStripHasItsPicturesInRows) {
 
 TEST(Film, AMissingOrMalformedModelIsOneSentence) {
   EXPECT_EQ(error_of("/no/robot.xml"), "cannot render '/no/robot.xml': no such file");
-  const auto path = std::filesystem::path(testing::TempDir()) / "film_bad.xml";
+  const auto path = std::filesystem::path(testing::TempDir()) / "footfall_film_bad.xml";
   std::ofstream(path) << "<mujoco><worldbody><geom type='bx'/></worldbody></mujoco>";
   const std::string error = error_of(path.string());
   EXPECT_TRUE(error.starts_with("cannot render '" + path.string() + "': ")) << error;
@@ -126,7 +130,7 @@ TEST(Film, AMovieNeedsAPlaceToWrite) {
     return;
   }
   EXPECT_THROW(MovieWriter("/no/such/folder/x.mp4", 32, 32, 30.0), std::runtime_error);
-  const auto path = std::filesystem::path(testing::TempDir()) / "it's a film.mp4";
+  const auto path = std::filesystem::path(testing::TempDir()) / "footfall's film.mp4";
   MovieWriter movie(path.string(), 32, 32, 30.0);
   for (int i = 0; i < 5; ++i) movie.add(Image(32, 32, static_cast<std::uint8_t>(40 * i)));
   movie.finish();

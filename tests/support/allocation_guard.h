@@ -12,7 +12,7 @@ class AllocationGuard {
   AllocationGuard(const AllocationGuard&) = delete;
   AllocationGuard& operator=(const AllocationGuard&) = delete;
 
-  static bool counts() noexcept;  // false under sanitizers
+  static bool counts() noexcept;      // false under sanitizers
   long allocations() const noexcept;  // since construction, frees included
 };
 

@@ -36,11 +36,11 @@ class Random {
 };
 
 struct StateSpread {
-  double joint = 0.15;     // rad about the nominal posture
-  double tilt = 0.1;       // rad
-  double yaw = 3.1;        // rad
-  double place = 0.5;      // m
-  double speed = 0.5;      // m/s and rad/s of the base
+  double joint = 0.15;       // rad about the nominal posture
+  double tilt = 0.1;         // rad
+  double yaw = 3.1;          // rad
+  double place = 0.5;        // m
+  double speed = 0.5;        // m/s and rad/s of the base
   double joint_speed = 1.0;  // rad/s
 };
 
@@ -83,8 +83,9 @@ inline model::State integrated(const model::State& from, double dt, int joints) 
   const double scale = speed > 0.0 ? std::sin(half) / speed : 0.0;
   const double a0 = std::cos(half), a1 = scale * w[0], a2 = scale * w[1], a3 = scale * w[2];
   const auto& q = from.q_WB;
-  s.q_WB = {q[0] * a0 - q[1] * a1 - q[2] * a2 - q[3] * a3, q[0] * a1 + q[1] * a0 + q[2] * a3 - q[3] * a2,
-            q[0] * a2 - q[1] * a3 + q[2] * a0 + q[3] * a1, q[0] * a3 + q[1] * a2 - q[2] * a1 + q[3] * a0};
+  s.q_WB = {
+      q[0] * a0 - q[1] * a1 - q[2] * a2 - q[3] * a3, q[0] * a1 + q[1] * a0 + q[2] * a3 - q[3] * a2,
+      q[0] * a2 - q[1] * a3 + q[2] * a0 + q[3] * a1, q[0] * a3 + q[1] * a2 - q[2] * a1 + q[3] * a0};
   for (std::size_t j = 0; j < static_cast<std::size_t>(joints); ++j) s.q[j] += dt * from.qd[j];
   return s;
 }

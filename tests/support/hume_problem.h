@@ -45,7 +45,8 @@ class ProblemBuilder {
     for (int q = 0; q < n_; ++q) {
       J[q] = 0.0;
       for (int i = 0; i < 3; ++i) {
-        J[q] += axis[static_cast<std::size_t>(i)] * k.jacobian[static_cast<std::size_t>(i * n_ + q)];
+        J[q] +=
+            axis[static_cast<std::size_t>(i)] * k.jacobian[static_cast<std::size_t>(i * n_ + q)];
       }
     }
     const std::size_t r = static_cast<std::size_t>(p_.task_rows++);
@@ -61,7 +62,8 @@ class ProblemBuilder {
     p_.u[r] = u;
   }
   void end_level() { p_.level_end[static_cast<std::size_t>(p_.levels++)] = p_.task_rows; }
-  // Mean tension of two contacts at places a, b of the set, positive apart; acts on the ground's force.
+  // Mean tension of two contacts at places a, b of the set, positive apart; acts on the ground's
+  // force.
   void tension(int a, int point_a, int b, int point_b, double wanted) {
     const auto& pa = model_.point(point_a).position;
     const auto& pb = model_.point(point_b).position;
@@ -99,7 +101,8 @@ inline void fill_dual(ProblemBuilder& b, const model::ControlModel& m, Random& r
   b.contact(kRightFoot);
   b.contact(kLeftFoot);
   b.row(m.com(), {0.0, 0.0, 1.0}, random.within(5.0));
-  for (int axis = 2; axis >= 0; --axis) b.row(m.base_rotation(), b.heading(axis), random.within(5.0));
+  for (int axis = 2; axis >= 0; --axis)
+    b.row(m.base_rotation(), b.heading(axis), random.within(5.0));
   b.end_level();
   for (int j = 0; j < m.joint_count(); ++j) b.joint_row(j, random.within(5.0));
   b.end_level();

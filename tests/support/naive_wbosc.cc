@@ -74,8 +74,7 @@ VectorXd internal_torque(const NaiveProblem& p, const Constrained& c, const Vect
   const MatrixXd J_il_bar = L_star * p.U * c.Js_bar * p.W_int.transpose();
   const MatrixXd J_il_star = pseudo_inverse(J_il_bar);
   const VectorXd F_task = p.W_int * c.Js_bar.transpose() * p.U.transpose() * tau_task;
-  const VectorXd mu_p =
-      p.W_int * (c.Js_bar.transpose() * p.h - c.Lambda_s * p.Js_bias);
+  const VectorXd mu_p = p.W_int * (c.Js_bar.transpose() * p.h - c.Lambda_s * p.Js_bias);
   VectorXd wanted = p.F_int;
   if (p.tau_measured.size() > 0) {
     wanted += p.K_F.cwiseProduct(p.F_int - p.W_int * reaction(p, c, p.tau_measured));

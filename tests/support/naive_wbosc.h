@@ -24,7 +24,7 @@ struct NaiveProblem {
   Eigen::MatrixXd Js;       // contact rows x n
   Eigen::VectorXd Js_bias;  // J̇s q̇
   std::vector<NaiveLevel> levels;
-  Eigen::MatrixXd W_int;    // acts on F_r, the force of the robot ON the ground
+  Eigen::MatrixXd W_int;  // acts on F_r, the force of the robot ON the ground
   Eigen::VectorXd F_int;
   Eigen::VectorXd K_F;
   Eigen::VectorXd tau_measured;  // empty: no feedback

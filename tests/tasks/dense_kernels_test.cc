@@ -60,7 +60,8 @@ TEST(PivotedQr, KeepsInnerProductsOfAllColumns) {
   EXPECT_EQ(f.rank, 4);
   MatrixXd permuted(9, 7);
   for (int c = 0; c < 7; ++c) permuted.col(c) = m.col(f.order[static_cast<std::size_t>(c)]);
-  EXPECT_LE((f.x.transpose() * f.x - permuted.transpose() * permuted).cwiseAbs().maxCoeff(), kRound);
+  EXPECT_LE((f.x.transpose() * f.x - permuted.transpose() * permuted).cwiseAbs().maxCoeff(),
+            kRound);
   for (int c = 0; c < 4; ++c) {
     for (int r = c + 1; r < 9; ++r) EXPECT_EQ(f.x(r, c), 0.0);
   }
@@ -116,9 +117,12 @@ TEST(LeastSquares, AgreesWithEigen) {
 TEST(OrthogonalFactor, GivesARotationAndATriangle) {
   Random random(7);
   const MatrixXd M = random_matrix(random, 6, 4);
-  RowMajor t = M, V(6, 6);
-  VectorXd work(16);
-  tasks::orthogonal_factor({t.data(), 4}, 6, 4, V.data(), work.data());
+  RowMajor t = M;
+  VectorXd v(36), beta(6);
+  tasks::Reflectors keep = {v.data(), beta.data(), 6, 0};
+  tasks::orthogonal_factor({t.data(), 4}, 6, 4, &keep);
+  MatrixXd V = MatrixXd::Identity(6, 6);
+  for (Index c = 0; c < 6; ++c) tasks::rotate_back(keep, 6, V.col(c).data());
   EXPECT_LE((V.transpose() * V - MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), kRound);
   MatrixXd T = MatrixXd::Zero(6, 4);
   T.topRows(4).triangularView<Eigen::Upper>() = t.topRows(4);
@@ -139,8 +143,8 @@ TEST(CascadeLevel, TheSecondLevelUsesOnlyWhatTheFirstLeaves) {
     std::iota(order.begin(), order.end(), 0);
     std::vector<double> norm2, weight(static_cast<std::size_t>(columns), 1.0);
     for (Index c = 0; c < columns; ++c) norm2.push_back(x.col(c).squaredNorm());
-    VectorXd z = VectorXd::Zero(dims), v(dims * dims), beta(dims), r(columns), d(columns * (dims + 1)),
-             work(3 * columns + 3 * dims);
+    VectorXd z = VectorXd::Zero(dims), v(dims * dims), beta(dims), r(columns),
+             d(columns * (dims + 1)), work(3 * columns + 3 * dims);
     tasks::Reflectors keep = {v.data(), beta.data(), dims, 0};
     const tasks::LevelScratch scratch = {r.data(), d.data(), work.data()};
     const Block block = {x.data(), columns};
@@ -154,8 +158,8 @@ TEST(CascadeLevel, TheSecondLevelUsesOnlyWhatTheFirstLeaves) {
     }
     tasks::rotate_back(keep, dims, z.data());
     EXPECT_LE((M1 * z - rhs.head(3)).cwiseAbs().maxCoeff(), 100 * kRound);
-    const MatrixXd N = MatrixXd::Identity(dims, dims) -
-                       M1.completeOrthogonalDecomposition().pseudoInverse() * M1;
+    const MatrixXd N =
+        MatrixXd::Identity(dims, dims) - M1.completeOrthogonalDecomposition().pseudoInverse() * M1;
     const VectorXd gradient = N.transpose() * M2.transpose() * (M2 * z - rhs.tail(second));
     EXPECT_LE(gradient.cwiseAbs().maxCoeff(), 100 * kRound);
   }

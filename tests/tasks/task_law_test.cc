@@ -25,6 +25,7 @@ using tasks::TaskType;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kPeriod = 1e-3;
+constexpr int kStanceFoot = 0;
 
 struct Law {
   RowMajor J;
@@ -66,7 +67,8 @@ class TaskLaw : public testing::Test {
       model_.update(state);
       const Law law = evaluate(task, axes, i);
       VectorXd u(law.bias.size());
-      for (Eigen::Index k = 0; k < u.size(); ++k) u(k) = law.axes[static_cast<std::size_t>(k)].commanded;
+      for (Eigen::Index k = 0; k < u.size(); ++k)
+        u(k) = law.axes[static_cast<std::size_t>(k)].commanded;
       const VectorXd a = law.J.completeOrthogonalDecomposition().solve(u - law.bias);
       model::State middle = state;
       for (std::size_t k = 0; k < 6; ++k) {
@@ -107,25 +109,19 @@ TEST_F(TaskLaw, CentreOfMassErrorsDecayAsTheGainsSay) {
   const auto com = model_.com().position;
   const std::vector<AxisCommand> axes = {{0, 100, 0, 20, com[0] + 0.03, 0, 0},
                                          {2, 100, 0, 20, com[2] - 0.02, 0, 0}};
-  const VectorXd e = error_after(task(TaskType::com_position), axes, standing_state(robot_), kDuration);
+  const VectorXd e =
+      error_after(task(TaskType::com_position), axes, standing_state(robot_), kDuration);
   EXPECT_NEAR(e(0), 0.03 * critically_damped(kDuration), 0.03 * kStep);
   EXPECT_NEAR(e(1), -0.02 * critically_damped(kDuration), 0.02 * kStep);
 }
 
 TEST_F(TaskLaw, PointErrorsDecayAsTheGainsSay) {
   model_.update(standing_state(robot_));
-  const auto foot = model_.point(1).position;
-  const std::vector<AxisCommand> axes = {{0, 100, 0, 20, foot[0] + 0.05, 0, 0},
-                                         {1, 100, 0, 20, foot[1] - 0.02, 0, 0},
-                                         {2, 100, 0, 20, foot[2] + 0.06, 0, 0}};
-  // A material point: the place under the ball moves on as the foot turns, by radius times the
-  // turn, which is not part of the law.
-  const VectorXd e = error_after(task(TaskType::point_position, 6), axes, standing_state(robot_), 1e-4);
-  EXPECT_EQ(e.size(), 3);
   const auto knee = model_.point(6).position;
   const std::vector<AxisCommand> at_knee = {{0, 100, 0, 20, knee[0] + 0.05, 0, 0},
                                             {2, 100, 0, 20, knee[2] + 0.02, 0, 0}};
-  const VectorXd k = error_after(task(TaskType::point_position, 6), at_knee, standing_state(robot_), kDuration);
+  const VectorXd k =
+      error_after(task(TaskType::point_position, 6), at_knee, standing_state(robot_), kDuration);
   EXPECT_NEAR(k(0), 0.05 * critically_damped(kDuration), 0.05 * kStep);
   EXPECT_NEAR(k(1), 0.02 * critically_damped(kDuration), 0.05 * kStep);
 }
@@ -134,7 +130,8 @@ TEST_F(TaskLaw, OrientationErrorsDecayAsTheGainsSayAtAnyHeading) {
   for (const double yaw : {0.0, 2.0, -2.5}) {
     const auto tilt = Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Vector3d::UnitY()));
     const std::vector<AxisCommand> axes = {{1, 100, 0, 20, 0, 0, 0}, {0, 100, 0, 20, 0, 0, 0}};
-    const VectorXd e = error_after(task(TaskType::body_orientation), axes, turned(yaw, tilt), kDuration);
+    const VectorXd e =
+        error_after(task(TaskType::body_orientation), axes, turned(yaw, tilt), kDuration);
     EXPECT_NEAR(e(0), -0.1 * critically_damped(kDuration), 0.1 * kStep);
     EXPECT_NEAR(e(1), 0.0, 0.1 * kStep);
   }
@@ -181,8 +178,9 @@ TEST_F(TaskLaw, AnOrientationErrorIsTheRotationVectorEvenWhenLarge) {
     model_.update(turned(yaw, Eigen::Quaterniond(about)));
     // Reference: the heading frame itself, whose roll, pitch and yaw are those of `yaw` alone. The
     // body's own heading differs: errors are given on its axes.
-    const Law law = evaluate(task(TaskType::body_orientation),
-                             {{0, 1, 0, 0, 0.0, 0, 0}, {1, 1, 0, 0, 0.0, 0, 0}, {2, 1, 0, 0, yaw, 0, 0}});
+    const Law law =
+        evaluate(task(TaskType::body_orientation),
+                 {{0, 1, 0, 0, 0.0, 0, 0}, {1, 1, 0, 0, 0.0, 0, 0}, {2, 1, 0, 0, yaw, 0, 0}});
     const Eigen::AngleAxisd heading(-model_.rpy()[2], Vector3d::UnitZ());
     const Vector3d world = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * (-1.5 * about.axis());
     const Vector3d expected = heading * world;
@@ -206,7 +204,8 @@ TEST_F(TaskLaw, PitchAndRollKeepTheirMeaningAtAnyYaw) {
 
 TEST_F(TaskLaw, YawThatIsNotControlledIsNoError) {
   model_.update(turned(2.0, Eigen::Quaterniond::Identity()));
-  const Law law = evaluate(task(TaskType::body_orientation), {{1, 1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0}});
+  const Law law =
+      evaluate(task(TaskType::body_orientation), {{1, 1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0}});
   EXPECT_NEAR(law.axes[0].error, 0.0, 1e-12);
   EXPECT_NEAR(law.axes[1].error, 0.0, 1e-12);
 }

@@ -54,7 +54,8 @@ TEST_F(WboscTension, TheMeanOfBothFeetIsWhatWasAskedForInAnyState) {
     solver_.solve();
     const VectorXd f = force_of(tau());
     double apart = 0.0;
-    for (int c = 0; c < 6; ++c) apart += solver_.problem().W_int[static_cast<std::size_t>(c)] * f(c);
+    for (int c = 0; c < 6; ++c)
+      apart += solver_.problem().W_int[static_cast<std::size_t>(c)] * f(c);
     const double tolerance = 1e-9 * f.cwiseAbs().maxCoeff();
     EXPECT_NEAR(apart, wanted, tolerance);
     EXPECT_NEAR(solver_.solution().internal[0], apart, tolerance);
@@ -72,7 +73,8 @@ TEST_F(WboscTension, MeasuredTensionIsThatOfTheMeasuredTorque) {
   EXPECT_NEAR(solver_.solution().internal_measured[0], apart, 1e-9 * f.cwiseAbs().maxCoeff());
 }
 
-// F_cmd = F_ref + K_F (F_ref - F): an actuator error that alone makes F wrong by d leaves d/(1+K_F).
+// F_cmd = F_ref + K_F (F_ref - F): an actuator error that alone makes F wrong by d leaves
+// d/(1+K_F).
 TEST_F(WboscTension, FeedbackLeavesOneOverOnePlusItsGainOfTheError) {
   const std::array<double, 6> actuator_error = {1.0, -2.0, 3.0, -1.0, 2.0, 4.0};
   double error_without = 0.0;

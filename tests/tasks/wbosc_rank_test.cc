@@ -71,7 +71,8 @@ class WboscRank : public testing::Test {
   // 20 markers: 8 on the torso, 6 on each shank; one level of 60 rows.
   void add_markers() {
     for (int i = 0; i < 8; ++i) {
-      add_point_rows(on_torso(model_, {random_.within(0.1), random_.within(0.1), random_.within(0.3)}), 5.0);
+      add_point_rows(
+          on_torso(model_, {random_.within(0.1), random_.within(0.1), random_.within(0.3)}), 5.0);
     }
     for (int i = 0; i < 6; ++i) {
       add_point_rows(between(model_.point(0), model_.point(5), 0.15 * i), 5.0);
@@ -88,7 +89,8 @@ class WboscRank : public testing::Test {
   NaiveProblem dense() { return dense_problem(model_, solver_.problem()); }
   VectorXd tau() const { return Eigen::Map<const VectorXd>(solver_.solution().tau.data(), 6); }
   VectorXd achieved() {
-    return Eigen::Map<const VectorXd>(solver_.solution().achieved.data(), solver_.problem().task_rows);
+    return Eigen::Map<const VectorXd>(solver_.solution().achieved.data(),
+                                      solver_.problem().task_rows);
   }
   VectorXd commanded() {
     return Eigen::Map<const VectorXd>(solver_.problem().u.data(), solver_.problem().task_rows);
@@ -200,7 +202,9 @@ TEST_F(WboscRank, RowsOfZerosHaveNoRank) {
 TEST_F(WboscRank, FourContactPointsOnOneLinkHoldItLikeAPlate) {
   for (int i = 0; i < 20; ++i) {
     next(false);
-    for (const auto& corner : {std::array<double, 3>{0.1, 0.1, 0.0}, {0.1, -0.1, 0.0}, {-0.1, 0.1, 0.0},
+    for (const auto& corner : {std::array<double, 3>{0.1, 0.1, 0.0},
+                               {0.1, -0.1, 0.0},
+                               {-0.1, 0.1, 0.0},
                                {-0.1, -0.1, 0.02}}) {
       add_contact(on_torso(model_, corner));
     }
@@ -237,7 +241,9 @@ TEST_F(WboscRank, ContactPointsOnALineLeaveTheTurnAboutIt) {
 TEST_F(WboscRank, RedundantContactsOnAMovingLinkAreHeldAsNearlyAsPossible) {
   for (int i = 0; i < 20; ++i) {
     next();
-    for (const auto& corner : {std::array<double, 3>{0.1, 0.1, 0.0}, {0.1, -0.1, 0.0}, {-0.1, 0.1, 0.0},
+    for (const auto& corner : {std::array<double, 3>{0.1, 0.1, 0.0},
+                               {0.1, -0.1, 0.0},
+                               {-0.1, 0.1, 0.0},
                                {-0.1, -0.1, 0.02}}) {
       add_contact(on_torso(model_, corner));
     }

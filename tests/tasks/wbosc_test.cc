@@ -43,7 +43,9 @@ class WboscOnHume : public testing::Test {
     return dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau);
   }
   VectorXd tau() const { return vector_of(solver_.solution().tau, 6); }
-  VectorXd achieved() { return vector_of(solver_.solution().achieved, solver_.problem().task_rows); }
+  VectorXd achieved() {
+    return vector_of(solver_.solution().achieved, solver_.problem().task_rows);
+  }
   VectorXd commanded() { return vector_of(solver_.problem().u, solver_.problem().task_rows); }
   // J q̈ + J̇ q̇ of all task rows for joint accelerations of the dense solve.
   VectorXd task_acceleration(const VectorXd& qdd) {

@@ -1,1 +1,259 @@
-// stub
+// Assembly of control laws, contact transitions in both forms, and reports.
+#include "tasks/whole_body_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "tests/support/allocation_guard.h"
+#include "tests/support/dense_solve.h"
+#include "tests/support/hume_control.h"
+#include "tests/support/naive_wbosc.h"
+
+namespace footfall::tests {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using tasks::ActiveControl;
+using tasks::ControlSet;
+using tasks::TransitionForm;
+
+constexpr double kBar = 1e-9;
+
+// Every axis asks for `acceleration` and nothing else.
+void ask_only(ControlSet& set, const std::vector<double>& acceleration) {
+  for (int i = 0; i < set.axis_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    set.axes[k].kp = set.axes[k].ki = set.axes[k].kd = 0.0;
+    set.axes[k].ref_acc = k < acceleration.size() ? acceleration[k] : 0.0;
+  }
+}
+
+class Controller : public testing::Test {
+ protected:
+  void SetUp() override {
+    model_.update(random_state(robot_, random_));
+    fill_dual_set(dual_);
+    fill_single_set(single_, model_.point(kLeftFoot).position);
+  }
+  VectorXd torque_of(const ControlSet& set) {
+    control_.primary = set;
+    control_.has_other = false;
+    compute(control_);
+    return tau();
+  }
+  void compute(const ActiveControl& control) {
+    const std::array<double, 6> measured{};
+    controller_.compute(control, tick_++, measured.data());
+  }
+  VectorXd tau() const { return Eigen::Map<const VectorXd>(controller_.result().tau.data(), 6); }
+  // As the controller should have assembled the single-support law.
+  NaiveProblem single_problem(const std::vector<double>& u) {
+    tasks::Wbosc solver(hume_sizes());
+    ProblemBuilder b(model_, solver.problem());
+    b.contact(kRightFoot);
+    b.row(model_.com(), {0.0, 0.0, 1.0}, u[0]);
+    b.row(model_.base_rotation(), b.heading(1), u[1]);
+    b.row(model_.base_rotation(), b.heading(0), u[2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::array<double, 3> axis{};
+      axis[k] = 1.0;
+      b.row(model_.point(kLeftFoot), axis, u[3 + k]);
+    }
+    b.end_level();
+    return dense_problem(model_, solver.problem());
+  }
+
+  model::RobotDescription robot_ = load_hume();
+  model::ControlModel model_{robot_};
+  tasks::WholeBodyController controller_{model_, {}, {4, 16, 2, 2}, 1.0 / 1500.0};
+  Random random_{11};
+  ControlSet dual_, single_;
+  ActiveControl control_;
+  std::int64_t tick_ = 0;
+};
+
+TEST_F(Controller, ReportsTheAccelerationsThatWereAskedFor) {
+  torque_of(single_);
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double u = controller_.result().axes[k].commanded;
+    EXPECT_NEAR(controller_.result().achieved[k], u, kBar * 1000.0);
+  }
+  EXPECT_EQ(controller_.result().tasks[0].rank, 6);
+  EXPECT_DOUBLE_EQ(controller_.result().tasks[2].authority, 1.0);
+  EXPECT_GE(controller_.result().tasks[0].condition, 1.0);
+}
+
+TEST_F(Controller, AssemblesTheLawsOfAppendixA) {
+  const std::vector<double> u = {1.0, -2.0, 0.5, 3.0, -1.0, 2.0};
+  ask_only(single_, u);
+  const VectorXd expected = naive_wbosc(single_problem(u)).tau;
+  EXPECT_LE((torque_of(single_) - expected).cwiseAbs().maxCoeff(),
+            kBar * expected.cwiseAbs().maxCoeff());
+}
+
+// Capacity for exactly two levels: neither may be folded into the other.
+TEST_F(Controller, KeepsAsManyLevelsAsItWasBuiltFor) {
+  torque_of(dual_);
+  EXPECT_EQ(controller_.result().tasks[0].rank, 4);
+  EXPECT_EQ(controller_.result().tasks[1].rank, 4);
+  EXPECT_EQ(controller_.result().tasks[2].rank, 1);
+  EXPECT_NEAR(controller_.result().tasks[2].authority, 1.0 / 6.0, 1e-15);
+}
+
+TEST_F(Controller, TensionNotNamedIsZeroAndNamedTensionIsReported) {
+  torque_of(dual_);
+  const auto& force = controller_.result().force;
+  const auto apart = [&]() {
+    Eigen::Vector3d x, df;
+    for (int k = 0; k < 3; ++k) {
+      const auto q = static_cast<std::size_t>(k);
+      x(k) = model_.point(kRightFoot).position[q] - model_.point(kLeftFoot).position[q];
+      df(k) = force[kRightFoot][q] - force[kLeftFoot][q];
+    }
+    return -0.5 * x.normalized().dot(df);
+  };
+  EXPECT_NEAR(apart(), 0.0, 1e-7);
+  SetBuilder builder(dual_);
+  fill_dual_set(dual_);
+  dual_.internal_count = 1;
+  dual_.internals[0] = {0, kRightFoot, kLeftFoot, 75.0, 0.0};
+  torque_of(dual_);
+  EXPECT_NEAR(apart(), 75.0, 1e-7);
+  EXPECT_NEAR(controller_.result().internal[0], 75.0, 1e-7);
+}
+
+TEST_F(Controller, ABlendIsExactAtBothEnds) {
+  const VectorXd single = torque_of(single_);
+  const VectorXd dual = torque_of(dual_);
+  ASSERT_GT((single - dual).cwiseAbs().maxCoeff(), 1.0);
+  control_.primary = single_;
+  control_.other = dual_;
+  control_.has_other = true;
+  for (auto* set : {&control_.primary, &control_.other}) {
+    for (auto& axis : set->axes) axis.ki = 0.0;
+  }
+  control_.other_weight = 0.0;
+  compute(control_);
+  const VectorXd at_zero = tau();
+  const VectorXd primary = Eigen::Map<const VectorXd>(controller_.tau_primary(), 6);
+  EXPECT_EQ((at_zero - primary).cwiseAbs().maxCoeff(), 0.0);
+  control_.other_weight = 1.0;
+  compute(control_);
+  const VectorXd other = Eigen::Map<const VectorXd>(controller_.tau_other(), 6);
+  EXPECT_EQ((tau() - other).cwiseAbs().maxCoeff(), 0.0);
+  control_.other_weight = 0.25;
+  compute(control_);
+  EXPECT_LE((tau() - (0.75 * primary + 0.25 * other)).cwiseAbs().maxCoeff(), 1e-12);
+  // Each law alone is what it is without a transition.
+  const ControlSet plain_dual = control_.other, plain_single = control_.primary;
+  EXPECT_LE((torque_of(plain_dual) - other).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LE((torque_of(plain_single) - primary).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_F(Controller, ABlendSharesTheMovingFootsForce) {
+  control_.primary = single_;
+  control_.other = dual_;
+  control_.has_other = true;
+  control_.other_weight = 0.5;
+  compute(control_);
+  const double half = controller_.result().force[kLeftFoot][2];
+  control_.other_weight = 1.0;
+  compute(control_);
+  EXPECT_NEAR(half, 0.5 * controller_.result().force[kLeftFoot][2], 1.0);
+}
+
+// E8: with equal task commands and a foot that does not accelerate, the frozen form at w = 1 is the
+// dual controller, and in between it is the corrected formula
+//   f_trans = w Λ* J A⁻¹ N_sᵀ J_swᵀ f_sw   (f_sw: the swing foot's part of F_r).
+TEST_F(Controller, TheFrozenFormIsTheDualControllerAtFullWeight) {
+  const std::vector<double> u = {1.0, -2.0, 0.5, 0.0, 0.0, 0.0};
+  ask_only(single_, u);
+  ask_only(dual_, {1.0, 0.7, -2.0, 0.5});
+  const VectorXd dual = torque_of(dual_);
+  const auto f_sw = controller_.result().force[kLeftFoot];
+
+  control_.primary = single_;
+  control_.other = dual_;
+  control_.has_other = true;
+  control_.form = TransitionForm::frozen;
+  control_.transition_entered = true;
+  control_.moving_contact_count = 1;
+  control_.moving_contacts[0] = kLeftFoot;
+  control_.other_weight = 1.0;
+  compute(control_);
+  EXPECT_LE((tau() - dual).cwiseAbs().maxCoeff(), kBar * dual.cwiseAbs().maxCoeff());
+
+  const NaiveProblem p = single_problem(u);
+  const MatrixXd Ainv = p.A.inverse();
+  const MatrixXd Lambda_s = (p.Js * Ainv * p.Js.transpose()).inverse();
+  const MatrixXd Ns = MatrixXd::Identity(12, 12) - Ainv * p.Js.transpose() * Lambda_s * p.Js;
+  const MatrixXd UNs = p.U * Ns;
+  const MatrixXd phi = UNs * Ainv * UNs.transpose();
+  const MatrixXd J_star = p.levels[0].J * Ainv * UNs.transpose() * phi.inverse();
+  const MatrixXd Lambda = (J_star * phi * J_star.transpose()).inverse();
+  const MatrixXd J_sw = p.levels[0].J.bottomRows(3);
+  const VectorXd on_ground = -Eigen::Map<const VectorXd>(f_sw.data(), 3);
+  control_.transition_entered = false;
+  for (const double w : {0.75, 0.3, 0.0}) {
+    control_.other_weight = w;
+    compute(control_);
+    const VectorXd f_trans =
+        w * Lambda * p.levels[0].J * Ainv * Ns.transpose() * J_sw.transpose() * on_ground;
+    const VectorXd expected = naive_wbosc(p).tau + J_star.transpose() * f_trans;
+    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kBar * dual.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_F(Controller, TheFrozenForceStaysThatOfEntry) {
+  control_.primary = single_;
+  control_.other = dual_;
+  control_.has_other = true;
+  control_.form = TransitionForm::frozen;
+  control_.transition_entered = true;
+  control_.moving_contact_count = 1;
+  control_.moving_contacts[0] = kLeftFoot;
+  control_.other_weight = 1.0;
+  ask_only(control_.primary, {});
+  ask_only(control_.other, {});
+  compute(control_);
+  control_.transition_entered = false;
+  control_.other_weight = 0.5;
+  compute(control_);
+  const VectorXd before = tau();
+  ask_only(control_.other, {5.0});  // the other law is not looked at any more
+  compute(control_);
+  EXPECT_EQ((tau() - before).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST_F(Controller, LimitsAreReported) {
+  tasks::WholeBodyController limited(model_, std::vector<double>(6, 1.0), {4, 16, 2, 2}, 1e-3);
+  control_.primary = single_;
+  limited.compute(control_, 0, nullptr);
+  EXPECT_TRUE(limited.result().limited);
+  for (std::size_t j = 0; j < 6; ++j) EXPECT_LE(std::abs(limited.result().tau[j]), 1.0);
+}
+
+TEST_F(Controller, AnEmptyControlSetIsLimp) {
+  EXPECT_EQ(torque_of(ControlSet{}).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_TRUE(controller_.result().finite);
+}
+
+TEST_F(Controller, ComputingAllocatesNothing) {
+  if (!AllocationGuard::counts()) GTEST_SKIP() << "not under sanitizers";
+  control_.primary = single_;
+  control_.other = dual_;
+  control_.has_other = true;
+  control_.other_weight = 0.5;
+  const AllocationGuard guard;
+  for (int i = 0; i < 20; ++i) {
+    control_.form = i % 2 == 0 ? TransitionForm::continuous : TransitionForm::frozen;
+    compute(control_);
+  }
+  EXPECT_EQ(guard.allocations(), 0);
+}
+
+}  // namespace
+}  // namespace footfall::tests

@@ -1,0 +1,139 @@
+// Contact and internal forces of the reduced WBOSC, and effective inertia; see wbosc.h.
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+
+#include "tasks/wbosc.h"
+
+namespace footfall::tasks {
+namespace {
+
+std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+}  // namespace
+
+// f = R⁻¹ (a₁ - B₁ τ + h₁): ground on robot; of least norm where contacts are redundant.
+void Wbosc::contact_forces(const double* tau, double* f) noexcept {
+  const int k = solution_.contact_rank;
+  const int nc = problem_.contact_rows;
+  const int na = sizes_.na;
+  double* tau_p = work_.data();
+  double* y = tau_p + na;
+  double* fp = y + k;
+  const int* order = actuator_order_.data() + col_u_;
+  for (int j = 0; j < na; ++j) tau_p[j] = tau[order[j]];
+  for (int i = 0; i < k; ++i) {
+    const double* x = row(i) + col_u_;
+    double value = a1_[size(i)] + row(i)[col_h_];
+    for (int j = 0; j < na; ++j) value -= x[j] * tau_p[j];
+    y[i] = value;
+  }
+  if (k == nc) {
+    for (int i = k - 1; i >= 0; --i) {
+      double value = y[i];
+      for (int q = i + 1; q < k; ++q) value -= row(i)[q] * fp[q];
+      fp[i] = value / row(i)[i];
+    }
+  } else {
+    for (int i = 0; i < k; ++i) {  // Tᵀ s = y
+      double value = y[i];
+      for (int q = 0; q < i; ++q) value -= Tc_[size(q * k + i)] * fp[q];
+      fp[i] = value / Tc_[size(i * k + i)];
+    }
+    std::fill(fp + k, fp + nc, 0.0);
+    rotate_back(contact_rotation(), nc, fp);
+  }
+  for (int i = 0; i < nc; ++i) f[contact_order_[size(i)]] = fp[i];
+}
+
+// In the null space of B torques only change contact forces: W_int f(τ + N α) = F_int, named rows
+// first, the others in what those left.
+void Wbosc::add_internal_forces() noexcept {
+  const int na = sizes_.na;
+  const int nc = problem_.contact_rows;
+  const int r = solution_.actuation_rank;
+  const int nulls = na - r;
+  const int rows = problem_.internal_rows;
+  if (rows == 0) return;
+  double* f0 = forces_.data();
+  double* f1 = f0 + nc;
+  double* probe = f1 + nc;
+  contact_forces(solution_.tau.data(), f0);
+  std::fill_n(internal_norm2_.data(), rows, 0.0);
+  for (int q = 0; q < nulls; ++q) {  // column q of G = W_int ∂f/∂α_q, stored transposed
+    for (int j = 0; j < na; ++j) {
+      const int actuator = actuator_order_[size(col_u_ + j)];
+      probe[actuator] = solution_.tau[size(actuator)] + N_[size(q * na + j)];
+    }
+    contact_forces(probe, f1);
+    for (int i = 0; i < rows; ++i) {
+      double value = 0.0;
+      for (int c = 0; c < nc; ++c) value += problem_.W_int[size(i * nc + c)] * (f1[c] - f0[c]);
+      G_[size(q * rows + i)] = value;
+      internal_norm2_[size(i)] += value * value;
+    }
+  }
+  if (problem_.tau_measured) contact_forces(problem_.tau_measured, f1);
+  for (int i = 0; i < rows; ++i) {
+    double now = 0.0;
+    double measured = 0.0;
+    for (int c = 0; c < nc; ++c) {
+      now += problem_.W_int[size(i * nc + c)] * f0[c];
+      measured += problem_.W_int[size(i * nc + c)] * f1[c];
+    }
+    double wanted = problem_.F_int[size(i)];
+    if (problem_.tau_measured) wanted += problem_.K_F[size(i)] * (wanted - measured);
+    solution_.internal_measured[size(i)] = problem_.tau_measured ? measured : now;
+    rhs_[size(i)] = wanted - now;
+    internal_order_[size(i)] = i;
+  }
+  if (nulls > 0) add_null_torque(nulls, rows);
+}
+
+// Solves Gᵀ's two-level cascade for α and adds N α to the torque.
+void Wbosc::add_null_torque(int nulls, int rows) noexcept {
+  const int na = sizes_.na;
+  const Block g = {G_.data(), rows};
+  const RankRule rule = {options_.rank_tolerance, options_.absolute_floor};
+  Reflectors keep = {null_reflectors_.data(), null_beta_.data(), na, 0};
+  const LevelScratch scratch = {y_.data(), work_.data() + 2 * (stride_ + sizes_.nv + rows),
+                                work_.data()};
+  std::fill_n(alpha_.data(), nulls, 0.0);
+  int done = 0;
+  const std::array<int, 3> ends = {0, std::min(problem_.named_internal_rows, rows), rows};
+  for (std::size_t level = 1; level < ends.size(); ++level) {
+    if (ends[level] == ends[level - 1]) continue;
+    const LevelRange range = {0, nulls, done, ends[level - 1], ends[level], rows, nulls};
+    done += solve_cascade_level(g, range, rule, internal_order_.data(), internal_norm2_.data(),
+                                rhs_.data(), internal_weight_.data(), alpha_.data(), &keep, nullptr,
+                                scratch);
+  }
+  rotate_back(keep, nulls, alpha_.data());
+  for (int j = 0; j < na; ++j) {
+    double value = 0.0;
+    for (int q = 0; q < nulls; ++q) value += N_[size(q * na + j)] * alpha_[size(q)];
+    solution_.tau[size(actuator_order_[size(col_u_ + j)])] += value;
+  }
+}
+
+// Gram matrix of J* in the metric of φ: rows of T in the range of B, whatever their rotation.
+void Wbosc::effective_inertia(int first, int last, double* lambda) const {
+  const int m = last - first;
+  const int k = solution_.contact_rank;
+  const int r = solution_.actuation_rank;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
+  for (int a = 0; a < problem_.task_rows; ++a) {
+    const int i = level_order_[size(col_t_ + a)] - first;
+    if (i < 0 || i >= m) continue;
+    for (int b = 0; b < problem_.task_rows; ++b) {
+      const int j = level_order_[size(col_t_ + b)] - first;
+      if (j < 0 || j >= m) continue;
+      for (int q = 0; q < r; ++q) gram(i, j) += row(k + q)[col_t_ + a] * row(k + q)[col_t_ + b];
+    }
+  }
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod(gram);
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(lambda, m, m) =
+      cod.pseudoInverse();
+}
+
+}  // namespace footfall::tasks

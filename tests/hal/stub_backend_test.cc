@@ -1,0 +1,138 @@
+// The backend without physics: double integrators and scripted contacts.
+#include "hal/stub_backend.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/support/allocation_guard.h"
+
+namespace footfall::tests {
+namespace {
+
+hal::StubSettings two_joints() {
+  hal::StubSettings settings;
+  settings.joints = 2;
+  settings.contacts = 2;
+  settings.period = 0.01;
+  settings.inertia = 0.5;
+  settings.start = {0.1, -0.2};
+  settings.base = {0.0, 0.0, 0.84};
+  return settings;
+}
+
+TEST(StubBackend, StartsWhereItWasTold) {
+  hal::StubBackend stub(two_joints());
+  stub.start();
+  hal::Sensors sensors;
+  EXPECT_TRUE(stub.read(sensors));
+  EXPECT_DOUBLE_EQ(sensors.q[0], 0.1);
+  EXPECT_DOUBLE_EQ(sensors.q[1], -0.2);
+  EXPECT_DOUBLE_EQ(sensors.qd[0], 0.0);
+  EXPECT_TRUE(sensors.has_truth);
+  EXPECT_DOUBLE_EQ(sensors.p_WB[2], 0.84);
+  EXPECT_EQ(sensors.time_ns, 0);
+}
+
+TEST(StubBackend, IntegratesAConstantTorqueExactly) {
+  hal::StubBackend stub(two_joints());
+  stub.start();
+  hal::Sensors sensors;
+  hal::Commands commands;
+  commands.tau[0] = 1.0;  // 2 rad/s²
+  for (int i = 0; i < 100; ++i) {
+    stub.read(sensors);
+    stub.write(commands);
+  }
+  stub.read(sensors);
+  EXPECT_EQ(sensors.time_ns, 1'000'000'000);
+  EXPECT_NEAR(sensors.q[0], 0.1 + 1.0, 1e-12);
+  EXPECT_NEAR(sensors.qd[0], 2.0, 1e-12);
+  EXPECT_DOUBLE_EQ(sensors.q[1], -0.2);
+  EXPECT_DOUBLE_EQ(sensors.tau[0], 1.0);
+}
+
+TEST(StubBackend, ContactsFollowTheScript) {
+  hal::StubSettings settings = two_joints();
+  settings.contact_script = [](int contact, double time) { return contact == 0 || time > 0.015; };
+  hal::StubBackend stub(settings);
+  stub.start();
+  hal::Sensors sensors;
+  for (const bool expected : {false, false, true}) {
+    stub.read(sensors);
+    EXPECT_TRUE(sensors.contact[0]);
+    EXPECT_EQ(sensors.contact[1], expected);
+    stub.write({});
+  }
+}
+
+TEST(StubBackend, WithoutAScriptAllContactsAreClosed) {
+  hal::StubBackend stub(two_joints());
+  stub.start();
+  hal::Sensors sensors;
+  stub.read(sensors);
+  EXPECT_TRUE(sensors.contact[0]);
+  EXPECT_TRUE(sensors.contact[1]);
+  EXPECT_FALSE(sensors.contact[2]);
+}
+
+TEST(StubBackend, AfterASafeStopTorquesHaveNoEffect) {
+  hal::StubBackend stub(two_joints());
+  stub.start();
+  stub.safe_stop();
+  stub.safe_stop();
+  hal::Commands commands;
+  commands.tau[0] = 5.0;
+  stub.write(commands);
+  hal::Sensors sensors;
+  stub.read(sensors);
+  EXPECT_DOUBLE_EQ(sensors.tau[0], 0.0);
+  EXPECT_DOUBLE_EQ(sensors.qd[0], 0.0);
+}
+
+TEST(StubBackend, ASecondStartBeginsAnew) {
+  hal::StubBackend stub(two_joints());
+  stub.start();
+  hal::Commands commands;
+  commands.tau[0] = 5.0;
+  stub.write(commands);
+  stub.safe_stop();
+  stub.start();
+  hal::Sensors sensors;
+  stub.read(sensors);
+  EXPECT_DOUBLE_EQ(sensors.q[0], 0.1);
+  stub.write(commands);
+  stub.read(sensors);
+  EXPECT_GT(sensors.qd[0], 0.0);
+}
+
+TEST(StubBackend, RefusesSizesThatDoNotFit) {
+  hal::StubSettings settings = two_joints();
+  settings.joints = 1000;
+  EXPECT_THROW(hal::StubBackend{settings}, std::runtime_error);
+  settings = two_joints();
+  settings.contacts = 1000;
+  EXPECT_THROW(hal::StubBackend{settings}, std::runtime_error);
+  settings = two_joints();
+  settings.period = 0.0;
+  EXPECT_THROW(hal::StubBackend{settings}, std::runtime_error);
+  settings = two_joints();
+  settings.inertia = -1.0;
+  EXPECT_THROW(hal::StubBackend{settings}, std::runtime_error);
+}
+
+TEST(StubBackend, ReadingAndWritingAllocateNothing) {
+  if (!AllocationGuard::counts()) GTEST_SKIP() << "not under sanitizers";
+  hal::StubBackend stub(two_joints());
+  stub.start();
+  hal::Sensors sensors;
+  const AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    stub.read(sensors);
+    stub.write({});
+  }
+  EXPECT_EQ(guard.allocations(), 0);
+}
+
+}  // namespace
+}  // namespace footfall::tests
