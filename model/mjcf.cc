@@ -3,6 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
@@ -26,7 +27,8 @@ struct VfsDeleter {
 
 [[noreturn]] void refuse(const std::string& what, const char* reason) {
   std::string text = reason;
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') text.pop_back();
   throw std::runtime_error(what + ": error: MuJoCo refuses it: " + text);
 }
 

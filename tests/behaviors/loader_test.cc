@@ -13,7 +13,7 @@ TEST(Loader, TheBalanceBehaviorLoadsWithoutAWarning) {
   const auto behavior = behaviors::load_behavior(balance_path(), options_for_tests(), diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "");
   ASSERT_TRUE(behavior);
-  EXPECT_EQ(behavior->name, "balance");
+  EXPECT_EQ(behavior->name, "kim2016_printed");
   EXPECT_EQ(behavior->robot.name, "hume");
   EXPECT_EQ(behavior->marks, std::vector<std::string>{"step"});
   EXPECT_EQ(behavior->step, 0);
