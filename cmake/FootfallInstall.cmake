@@ -11,9 +11,11 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATAD
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/behaviors/library DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/behaviors)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/worlds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/sim)
 install(EXPORT footfallTargets NAMESPACE footfall:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)
+set(FOOTFALL_DATA_DIR ${CMAKE_INSTALL_DATADIR}/footfall)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/footfallConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/footfallConfig.cmake INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)
+  ${PROJECT_BINARY_DIR}/footfallConfig.cmake INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall
+  PATH_VARS FOOTFALL_DATA_DIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/footfallConfig.cmake ${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake
-  ${PROJECT_SOURCE_DIR}/cmake/FootfallDependencies.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FootfallZstd.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)

@@ -25,7 +25,7 @@ bool Pacer::wait() noexcept {
   if (next_ns_ == 0) next_ns_ = now;
   next_ns_ += period_ns_;
   if (next_ns_ <= now) {
-    next_ns_ += ((now - next_ns_) / period_ns_ + 1) * period_ns_;
+    next_ns_ += (now - next_ns_) / period_ns_ * period_ns_;  // the last one that passed
     ++overruns_;
     return false;
   }

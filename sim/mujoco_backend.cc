@@ -171,10 +171,14 @@ void MujocoBackend::write(const hal::Commands& commands) noexcept {
 }
 
 void MujocoBackend::apply_pushes() noexcept {
+  for (const ActivePush& p : pushes_) {
+    if (p.body != 0) std::fill_n(data_->xfrc_applied + 6 * p.body, 3, 0.0);
+  }
+  // Pushes that overlap on one body add up.
   for (ActivePush& p : pushes_) {
     if (p.body == 0) continue;
     double* force = data_->xfrc_applied + 6 * p.body;
-    for (std::size_t k = 0; k < 3; ++k) force[k] = p.steps_left > 0 ? p.force[k] : 0.0;
+    for (std::size_t k = 0; k < 3 && p.steps_left > 0; ++k) force[k] += p.force[k];
     if (p.steps_left-- <= 0) p = {};
   }
 }

@@ -43,7 +43,7 @@ def cases(folder):
         "unknown robot": ["run", written(folder / "robot.yaml", replaced(balance, r"^robot: .*$", "robot: humme"))],
         "missing file": ["run", str(folder / "nowhere.yaml")],
         "malformed MJCF": ["run", written(folder / "mjcf.yaml", replaced(balance, r"^robot: .*$", "robot: broken"))],
-        "malformed YAML": ["run", written(folder / "yaml.yaml", balance + "\nmachine: {states: [unclosed\n")],
+        "malformed YAML": ["run", written(folder / "yaml.yaml", balance + "\nunclosed: [1, 2\n")],
         "missing point": ["run", written(folder / "point.yaml", replaced(balance, r"point: *[^,}\n]+", "point: third_foot"))],
         "no rights to write the log": ["run", library, "--log", str(blocked / "log")],
     }

@@ -7,10 +7,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import hashlib
 
-from rows import BALANCE, BEST, finish, give_up, run, scratch
+from rows import BALANCE, BEST, SEED, finish, give_up, run, scratch
 
-CASES = {"in place": [BALANCE, "--seed", 7, "--for", "20s"],
-         "pushed": [BEST, "--seed", 8, "--for", "20s", "--push", "40,0.1,67.5,step 8 phase 0.5"]}
+CASES = {"in place": [BALANCE, "--seed", SEED, "--for", "20s"],
+         "pushed": [BEST, "--seed", SEED + 1, "--for", "20s", "--push", "40,0.1,67.5,step 8 phase 0.5"]}
 
 
 def digest(arguments, folder):

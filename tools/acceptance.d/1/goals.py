@@ -5,7 +5,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from rows import BEST, WANT, finish, run_all
+from rows import BEST, SEED, WANT, finish, run_all
 
 STEPS = 100
 GOALS = {"0.1 forward": (0.1, 0.0), "0.2 forward": (0.2, 0.0), "0.3 forward": (0.3, 0.0),
@@ -27,7 +27,7 @@ def good(result, goal):
 
 
 goals = dict(GOALS, **(WANTED if WANT else {}))
-results = run_all([(name, [BEST, "--seed", 1, "--steps", STEPS, f"--goal-velocity={x},{y}"])
+results = run_all([(name, [BEST, "--seed", SEED, "--steps", STEPS, f"--goal-velocity={x},{y}"])
                    for name, (x, y) in goals.items()])
 figure = "; ".join(f"{name}: {r['steps']} steps, {100 * error(r, goals[name]):.1f} %" + (" FELL" if r["fell"] else "")
                    for name, r in results.items())

@@ -5,7 +5,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from rows import BEST, ROOT, WANT, finish, give_up, run_all
+from rows import BEST, ROOT, SEED, WANT, finish, give_up, run_all
 
 STEPS = 300
 WORLDS = {"masses -10 %": "mass_minus_10", "masses +10 %": "mass_plus_10", "friction 0.3": "slippery",
@@ -16,7 +16,7 @@ worlds = dict(WORLDS, **(WANTED if WANT else {}))
 for world in worlds.values():
     if not (ROOT / "sim" / "worlds" / f"{world}.yaml").is_file():
         give_up(f"sim/worlds/{world}.yaml is missing")
-results = run_all([(name, [BEST, "--seed", 1, "--steps", STEPS, "--world", f"sim/worlds/{world}.yaml"])
+results = run_all([(name, [BEST, "--seed", SEED, "--steps", STEPS, "--world", f"sim/worlds/{world}.yaml"])
                    for name, world in worlds.items()])
 reached = {name: r["steps"] >= STEPS and not r["fell"] for name, r in results.items()}
 figure = "; ".join(f"{name}: {r['steps']} steps" + ("" if reached[name] else f" ({r['end']})")

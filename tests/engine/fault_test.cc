@@ -1,0 +1,188 @@
+// What the loop does when something is wrong: each fault is counted once when it appears, and what
+// is written to the hardware stays finite.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/fake_robot.h"
+
+namespace footfall::tests {
+namespace {
+
+using core::Fault;
+using engine::LoopState;
+
+// Holds the posture so stiffly that 1 rad of error is far beyond every torque limit.
+constexpr const char* kHold = R"(
+behavior: 1
+robot: hume
+machine:
+  safe: limp
+  states:
+    hold: {contacts: [], tasks: {pose: {type: joint_posture, priority: 1, gains: {kp: 2000}, reference: entry}}}
+    limp: {contacts: [], tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}}
+)";
+
+constexpr double kHeavy = 1e6;  // kg m^2: joints that do not move
+
+bool finite(const hal::Commands& commands) {
+  for (const double tau : commands.tau) {
+    if (!std::isfinite(tau)) return false;
+  }
+  return true;
+}
+
+void run(StubRig& rig, int ticks) {
+  for (int k = 0; k < ticks; ++k) {
+    rig.loop->tick();
+    ASSERT_TRUE(finite(rig.loop->commands())) << k;
+  }
+}
+
+class NotANumber : public testing::TestWithParam<double> {};
+
+TEST_P(NotANumber, IsCountedOnceAndStopsARobotThatSaysSo) {
+  for (const bool velocity : {false, true}) {
+    StubRig rig(kHold, kHeavy, nullptr, [](behaviors::Behavior& b) {
+      b.robot.reactions[static_cast<std::size_t>(Fault::non_finite)] = core::Reaction::safe_stop;
+    });
+    rig.hardware->spoil = [velocity](hal::Sensors& sensors, std::int64_t tick) {
+      if (tick >= 20 && tick < 30) (velocity ? sensors.qd : sensors.q)[3] = GetParam();
+    };
+    rig.loop->start();
+    run(rig, 20);
+    EXPECT_EQ(rig.loop->state(), LoopState::running);
+    EXPECT_EQ(rig.faults(Fault::non_finite), 0);
+    run(rig, 30);
+    EXPECT_EQ(rig.loop->state(), LoopState::stopped);
+    EXPECT_EQ(rig.faults(Fault::non_finite), 1);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, NotANumber,
+                         testing::Values(std::numeric_limits<double>::quiet_NaN(),
+                                         std::numeric_limits<double>::infinity()));
+
+TEST(Faults, ANotANumberOfTheBaseEntersTheSafeStateByDefault) {
+  StubRig rig(kHold, kHeavy);
+  rig.hardware->spoil = [](hal::Sensors& sensors, std::int64_t tick) {
+    if (tick == 20) sensors.v_WB[1] = std::nan("");
+  };
+  rig.loop->start();
+  run(rig, 40);
+  EXPECT_EQ(rig.state(), "limp");
+  EXPECT_EQ(rig.faults(Fault::non_finite), 1);
+}
+
+TEST(Faults, AnOrientationThatIsNotANumberIsAFault) {
+  StubRig rig(kHold, kHeavy);
+  rig.hardware->spoil = [](hal::Sensors& sensors, std::int64_t tick) {
+    if (tick == 20) sensors.q_WB[2] = std::nan("");
+  };
+  rig.loop->start();
+  run(rig, 40);
+  EXPECT_GE(rig.faults(Fault::non_finite), 1);
+  EXPECT_EQ(rig.state(), "limp");
+}
+
+// Each way to lie on the ground.
+struct Fallen {
+  const char* name;
+  void (*spoil)(hal::Sensors&);
+};
+
+class Fall : public testing::TestWithParam<Fallen> {};
+
+TEST_P(Fall, EndsTheLoopAndIsCountedOnce) {
+  StubRig rig(kHold, kHeavy);
+  rig.hardware->spoil = [](hal::Sensors& sensors, std::int64_t tick) {
+    if (tick >= 30) GetParam().spoil(sensors);
+  };
+  rig.loop->start();
+  run(rig, 30);
+  EXPECT_EQ(rig.loop->state(), LoopState::running);
+  run(rig, 30);
+  EXPECT_EQ(rig.loop->state(), LoopState::fallen);
+  EXPECT_EQ(rig.faults(Fault::fall), 1);
+  EXPECT_EQ(rig.state(), "limp");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, Fall,
+    testing::Values(Fallen{"low",
+                           [](hal::Sensors& s) {  // knees folded: the hip at 0.2 of its height
+                             for (const std::size_t leg : {0U, 3U}) {
+                               s.q[leg + 1] = -1.4;
+                               s.q[leg + 2] = 2.8;
+                             }
+                           }},
+                    Fallen{"tilt", [](hal::Sensors& s) {
+                             s.q_WB = {std::cos(0.45), std::sin(0.45), 0, 0};  // 0.9 rad
+                           }},
+                    Fallen{"body", [](hal::Sensors& s) { s.body_contact = true; }}),
+    [](const testing::TestParamInfo<Fallen>& info) { return std::string(info.param.name); });
+
+TEST(Faults, ATiltJustInsideTheLimitIsNoFall) {
+  StubRig rig(kHold, kHeavy);
+  rig.hardware->spoil = [](hal::Sensors& s, std::int64_t) {
+    s.q_WB = {std::cos(0.395), 0, std::sin(0.395), 0};  // 0.79 of 0.8 rad
+  };
+  rig.loop->start();
+  run(rig, 5);
+  EXPECT_EQ(rig.loop->state(), LoopState::running);
+}
+
+TEST(Faults, AWarningOfTheSimulatorEndsTheLoopAsAFall) {
+  StubRig rig(kHold, kHeavy);
+  rig.hardware->spoil = [](hal::Sensors& s, std::int64_t tick) { s.backend_fault = tick >= 5; };
+  rig.loop->start();
+  run(rig, 10);
+  EXPECT_EQ(rig.loop->state(), LoopState::fallen);
+  EXPECT_EQ(rig.faults(Fault::simulator_warning), 1);
+}
+
+TEST(Faults, TorqueLimitAndTorqueStepAreCountedOnceForEachAppearance) {
+  StubRig rig(kHold, kHeavy);
+  rig.hardware->spoil = [](hal::Sensors& s, std::int64_t tick) {
+    if ((tick >= 50 && tick < 100) || (tick >= 150 && tick < 200)) s.q[0] += 0.5;
+  };
+  rig.loop->start();
+  double largest = 0.0;
+  for (int k = 0; k < 300; ++k) {
+    rig.loop->tick();
+    for (std::size_t j = 0; j < 6; ++j) {
+      const double part =
+          std::abs(rig.loop->commands().tau[j]) / rig.behavior->robot.joints[j].torque_limit;
+      largest = std::max(largest, part);
+    }
+  }
+  EXPECT_DOUBLE_EQ(largest, 1.0);  // clamped, not beyond
+  EXPECT_EQ(rig.faults(Fault::torque_limit), 2);
+  EXPECT_EQ(rig.faults(Fault::torque_step), 4);  // in and out, twice
+  EXPECT_EQ(rig.loop->state(), LoopState::running);
+  EXPECT_EQ(rig.state(), "hold");  // both reactions are `continue`
+}
+
+TEST(Faults, StaleSensorsAreCounted) {
+  StubRig rig(kHold, kHeavy);
+  rig.loop->start();
+  rig.hardware->stale = true;
+  run(rig, 7);
+  EXPECT_EQ(rig.faults(Fault::sensor_stale), 7);
+}
+
+TEST(Faults, ASafeStopEntersTheSafeStateAndStopsTheHardware) {
+  StubRig rig(kHold, 1.0);
+  rig.loop->start();
+  run(rig, 5);
+  rig.loop->safe_stop();
+  EXPECT_EQ(rig.state(), "limp");
+  rig.hardware->spoil = [](hal::Sensors& s, std::int64_t) { s.qd[0] = 3.0; };
+  run(rig, 2);
+  EXPECT_GT(std::abs(rig.loop->commands().tau[0]), 0.0);
+  EXPECT_EQ(rig.loop->sensors().tau[0], 0.0);  // commanded, but no torque acts any more
+}
+
+}  // namespace
+}  // namespace footfall::tests

@@ -1,0 +1,42 @@
+// Pacing by absolute boundaries. Time is only bounded from below, and above by half a second.
+#include "engine/pacer.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace footfall::engine {
+namespace {
+
+using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC, as the pacer's
+using std::chrono::milliseconds;
+
+TEST(Pacer, SleepsToTheEndOfEachPeriod) {
+  Pacer pacer(0.02);
+  const auto start = Clock::now();
+  int on_time = 0;
+  for (int k = 1; k <= 5; ++k) on_time += pacer.wait() ? 1 : 0;
+  EXPECT_GE(Clock::now() - start, milliseconds(5 * 20));
+  EXPECT_EQ(on_time + pacer.overruns(), 5);
+}
+
+TEST(Pacer, AnOverrunIsCountedAndSkipsToTheNextBoundary) {
+  constexpr auto kPeriod = milliseconds(500);
+  Pacer pacer(0.5);
+  const auto before = Clock::now();
+  ASSERT_TRUE(pacer.wait());  // boundaries are whole periods after this call
+  std::this_thread::sleep_for(kPeriod + milliseconds(150));
+  EXPECT_FALSE(pacer.wait());  // late: it does not wait
+  const auto late = Clock::now();
+  EXPECT_EQ(pacer.overruns(), 1);
+  ASSERT_TRUE(pacer.wait());
+  const auto next = Clock::now();
+  // Boundary 3 of the clock, neither a burst (2) nor one too many (4).
+  EXPECT_GE(next - before, 3 * kPeriod);
+  EXPECT_LT(next - late, kPeriod);
+  EXPECT_EQ(pacer.overruns(), 1);
+}
+
+}  // namespace
+}  // namespace footfall::engine

@@ -1,0 +1,91 @@
+// The last word before the hardware.
+#include "engine/safety.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/hume.h"
+
+namespace footfall::tests {
+namespace {
+
+using core::Fault;
+
+class Safety : public testing::Test {
+ protected:
+  model::RobotDescription robot = load_hume();
+  engine::SafetyFilter filter{robot};
+};
+
+TEST_F(Safety, WhatIsNotFiniteBecomesZeroAndIsReported) {
+  hal::Commands commands;
+  commands.tau = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                  -std::numeric_limits<double>::infinity(), 1.0};
+  const engine::SafetyFindings findings = filter.filter(commands);
+  EXPECT_TRUE(findings.has(Fault::non_finite));
+  EXPECT_FALSE(findings.has(Fault::torque_limit));
+  EXPECT_EQ(commands.tau[0], 0.0);
+  EXPECT_EQ(commands.tau[1], 0.0);
+  EXPECT_EQ(commands.tau[2], 0.0);
+  EXPECT_EQ(commands.tau[3], 1.0);
+}
+
+TEST_F(Safety, TorquesAreClampedToEachJointsOwnLimit) {
+  hal::Commands commands;
+  commands.tau = {70.0, 70.0, -170.0, -70.0, 0.0, 99.9};
+  const engine::SafetyFindings findings = filter.filter(commands);
+  EXPECT_TRUE(findings.has(Fault::torque_limit));
+  const std::array<double, 6> wanted = {50.0, 70.0, -100.0, -50.0, 0.0, 99.9};
+  for (std::size_t j = 0; j < 6; ++j) EXPECT_EQ(commands.tau[j], wanted[j]) << j;
+}
+
+TEST_F(Safety, TheFirstTickHasNoStepAndLaterOnesAreOfWhatIsSent) {
+  hal::Commands commands;
+  commands.tau[0] = 40.0;
+  EXPECT_FALSE(filter.filter(commands).any);
+  EXPECT_EQ(filter.torque_step(), 0.0);
+  commands.tau[0] = 44.9;
+  EXPECT_FALSE(filter.filter(commands).has(Fault::torque_step));
+  EXPECT_NEAR(filter.torque_step(), 4.9, 1e-12);
+  commands.tau[0] = 500.0;  // clamped to 50: a step of 5.1
+  EXPECT_TRUE(filter.filter(commands).has(Fault::torque_step));
+  EXPECT_NEAR(filter.torque_step(), 5.1, 1e-12);
+  commands.tau[0] = 50.0;
+  EXPECT_FALSE(filter.filter(commands).has(Fault::torque_step));
+  EXPECT_EQ(filter.torque_step(), 0.0);
+}
+
+TEST_F(Safety, AStandingRobotIsInOrder) {
+  model::ControlModel model(robot);
+  model.update(standing_state(robot));
+  EXPECT_FALSE(filter.check_state({}, model).any);
+}
+
+TEST_F(Safety, HeightIsCountedFromTheLowestContactPoint) {
+  model::ControlModel model(robot);
+  model::State state = standing_state(robot);
+  state.p_WB[2] += 10.0;  // on a roof
+  model.update(state);
+  EXPECT_FALSE(filter.check_state({}, model).any);
+  for (const std::size_t leg : {0U, 3U}) {
+    state.q[leg + 1] = -1.4;
+    state.q[leg + 2] = 2.8;
+  }
+  model.update(state);
+  EXPECT_TRUE(filter.check_state({}, model).has(Fault::fall));
+}
+
+TEST_F(Safety, AJointBeyondItsLimitIsReported) {
+  model::ControlModel model(robot);
+  model::State state = standing_state(robot);
+  state.q[2] = robot.joints[2].position_max + 1e-6;
+  model.update(state);
+  const engine::SafetyFindings findings = filter.check_state({}, model);
+  EXPECT_TRUE(findings.has(Fault::joint_limit));
+  EXPECT_FALSE(findings.has(Fault::fall));
+}
+
+}  // namespace
+}  // namespace footfall::tests
