@@ -23,7 +23,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : footfall::apps::kBadInput;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::fprintf(stderr, "footfall: error: %s (see footfall --help)\n", error.what());
+    return footfall::apps::kBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "footfall: error: %s\n", error.what());
     return footfall::apps::kMachineFailed;

@@ -16,15 +16,6 @@
 namespace footfall::apps {
 namespace {
 
-struct ReportArguments {
-  std::string log;
-  std::string out;    // default: report.html beside the log
-  std::string strip;  // a PNG besides the page
-  std::string film;   // an MP4
-  bool no_strip = false;
-  bool static_plots = false;
-};
-
 // A file beside the log; empty if it is not there.
 std::string text_beside(const std::filesystem::path& log, const char* name) {
   std::ifstream file(log.parent_path() / name, std::ios::binary);
@@ -37,7 +28,9 @@ std::filesystem::path log_path(const std::string& argument) {
   return std::filesystem::is_directory(path) ? path / "log.mcap" : path;
 }
 
-int report(const ReportArguments& arguments) {
+}  // namespace
+
+int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
   const std::filesystem::path path = log_path(arguments.log);
   int exit_code = 0;
   try {
@@ -60,13 +53,13 @@ int report(const ReportArguments& arguments) {
     const std::string out =
         arguments.out.empty() ? (path.parent_path() / "report.html").string() : arguments.out;
     lab::write_report(log, out, options);
-    std::printf("%s\n", out.c_str());
+    std::fprintf(stream, "  report       %s\n", out.c_str());
     if (!log.complete)
       std::fprintf(stderr, "warning: the log was cut off; the report ends there\n");
     if (!arguments.film.empty()) {
       try {
         write_film(log, arguments.film);
-        std::printf("%s\n", arguments.film.c_str());
+        std::fprintf(stream, "  film         %s\n", arguments.film.c_str());
       } catch (const std::runtime_error& error) {
         std::fprintf(stderr, "error: %s\n", error.what());
         exit_code = 3;
@@ -78,8 +71,6 @@ int report(const ReportArguments& arguments) {
   }
   return exit_code;
 }
-
-}  // namespace
 
 void add_report_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
@@ -93,7 +84,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->add_flag("--no-strip", arguments->no_strip, "a page without pictures of the robot");
   command->add_flag("--static", arguments->static_plots, "plots as SVG, without script");
   command->footer("Example: footfall report out/demo -o report.html --strip strip.png");
-  command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = write_report_files(*arguments, stdout); });
 }
 
 }  // namespace footfall::apps

@@ -2,8 +2,22 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
 
 namespace footfall::apps {
+
+struct ReportArguments {
+  std::string log;    // log.mcap, or the folder it is in
+  std::string out;    // default: report.html beside the log
+  std::string strip;  // a PNG besides the page
+  std::string film;   // an MP4
+  bool no_strip = false;
+  bool static_plots = false;
+};
+
+// Writes what is asked for and prints the paths on `out`; returns the exit code, see below.
+int write_report_files(const ReportArguments& arguments, std::FILE* out);
 
 // Registers the command. When it is called, it runs and puts the process's exit code into
 // exit_code: 0 good, 2 the input is wrong (no such log, not a log, nowhere to write), 3 no film

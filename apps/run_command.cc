@@ -12,6 +12,7 @@
 
 #include "apps/allocations.h"
 #include "apps/commands.h"
+#include "apps/report_command.h"
 #include "apps/run_options.h"
 #include "engine/log_writer.h"
 #include "hal/stub_backend.h"
@@ -165,6 +166,9 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options, const beh
 }
 
 int run_behavior(const RunOptions& options) {
+  if (!options.film.empty() && (options.no_log || options.no_report)) {
+    throw InputError("--film: error: a film is made from the log with the report: leave out --no-log and --no-report");
+  }
   auto behavior = load_or_explain(options.behavior, options.robot, options.set);
   if (!behavior) return kBadInput;
   if (!behavior->has_robot) {
@@ -196,8 +200,14 @@ int run_behavior(const RunOptions& options) {
   }
   if (!options.quiet) std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);
   if (!options.quiet && log) fmt::print(options.json ? stderr : stdout, "  log          {}\n", id.log);
+  int report_code = kGood;
+  if (log && !options.no_report) {
+    report_code = write_report_files({.log = id.log, .film = options.film},
+                                     options.json || options.quiet ? stderr : stdout);
+  }
   if (options.json) fmt::print("{}\n", lab::summary_json(id, result).dump());
-  return result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault ? kRobotFailed : kGood;
+  const bool failed = result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault;
+  return failed ? kRobotFailed : report_code;
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_option("--goal-velocity", o.goal_velocity, "vx,vy in m/s: the goal moves from the start on");
   command.add_option("--log", o.log, "Folder for log.mcap, summary.json, timing.json")->capture_default_str();
   command.add_flag("--no-log", o.no_log, "Writes no files");
+  command.add_flag("--no-report", o.no_report, "No report page beside the log");
+  command.add_option("--film", o.film, "Writes the run as MP4 (needs ffmpeg)");
   command.add_flag("--log-all", o.log_all, "Logs every tick");
   command.add_option("--log-every", o.log_every, "Logs every N-th tick")->check(CLI::PositiveNumber)->capture_default_str();
   command.add_flag("--realtime", o.realtime, "Paced by the wall clock");

@@ -25,6 +25,8 @@ struct RunOptions {
   std::string goal, goal_velocity;
   std::string log = "out/run";    // folder
   bool no_log = false;
+  bool no_report = false;
+  std::string film;               // MP4, empty: none
   bool log_all = false;
   int log_every = 6;              // ticks: 250 Hz at 1500 Hz
   bool json = false;

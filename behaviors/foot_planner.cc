@@ -39,7 +39,6 @@ FootPlan plan_foot(const FootPlannerSpec& spec, const FootPlannerInput& in) noex
   const double omega = std::sqrt(spec.gravity / in.com_height);
   const Vector2 x = to_heading({in.com[0] - in.stance[0], in.com[1] - in.stance[1]}, c, s);
   const Vector2 v = to_heading(in.com_vel, c, s);
-  const Vector2 goal_vel = to_heading(in.goal_vel, c, s);
   const Vector2 goal = to_heading({in.goal[0] - in.stance[0], in.goal[1] - in.stance[1]}, c, s);
 
   double time = std::max(0.0, in.switch_in);
@@ -60,7 +59,7 @@ FootPlan plan_foot(const FootPlannerSpec& spec, const FootPlannerInput& in) noex
     const Vector2 p = predict(k, time);
     switch_pos[k] = p[0];
     switch_vel[k] = p[1];
-    double from_goal = p[0] - (goal[k] + goal_vel[k] * time);
+    double from_goal = p[0] - goal[k];
     if (spec.goal_error_limit > 0.0) {
       from_goal = std::clamp(from_goal, -spec.goal_error_limit, spec.goal_error_limit);
     }

@@ -36,7 +36,6 @@ struct FootPlannerInput {
   std::array<double, 3> stance{};    // m, world, contact point
   double yaw = 0.0;                  // rad, heading
   std::array<double, 2> goal{};      // m, world
-  std::array<double, 2> goal_vel{};  // m/s, world: the goal moves
   double switch_in = 0.0;            // s until the stance foot changes
   double swing_side = 1.0;           // +1: the swing foot belongs on the left, -1: on the right
 };

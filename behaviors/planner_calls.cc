@@ -155,6 +155,7 @@ void PlannerCalls::write(int planner, const PlanAnswer& answer, double switch_ti
     signals_[out.predicted_vel + k] = answer.predicted_vel[at(k)];
   }
   signals_[out.switch_time] = switch_time;
+  signals_[out.extension] = answer.extension;
   signals_[out.late] = late ? 1.0 : 0.0;
 }
 

@@ -103,6 +103,8 @@ PlannerSignals add_planner(const std::string& planner, core::SignalTable& table)
                                    "centre of mass at the switch as predicted, world", {"x", "y"});
   signals.predicted_vel = add_axes(table, name + ".predicted_vel", core::kVelocity,
                                    "its velocity then, world", {"x", "y"});
+  signals.extension = table.add(name + ".extension", core::kTime,
+                                "by which the swing-time rule wants landing prolonged");
   signals.switch_time = table.add(name + ".switch_time", core::kTime, "when the support changes");
   signals.late = table.add(name + ".late", core::kNone, "1 while its last answer was late");
   return signals;

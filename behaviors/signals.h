@@ -35,6 +35,7 @@ struct PlannerSignals {
   int predicted_vel = -1;  // x, y: CoM velocity at the switch as predicted, m/s, world
   int switch_time = -1;    // absolute time of the predicted switch, s
   int late = -1;
+  int extension = -1;      // s, by which the swing-time rule wants landing prolonged
 };
 
 // A task as named by a behavior: name and the axes it may have.

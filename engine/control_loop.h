@@ -38,7 +38,8 @@ class ControlLoop {
   ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& hardware,
               const LoopSettings& settings);
 
-  // Starts the hardware, reads it once and enters the behavior's initial state. May throw.
+  // Starts the hardware, reads it once and enters the behavior's initial state; once in a loop's
+  // life (integrals, fault counters and parameters are those of one run). May throw.
   void start();
 
   // The tick in two halves, so that a caller can time control apart from the backend:

@@ -23,8 +23,8 @@ class PlannerLink {
   void observe(std::span<const int> stance_contacts, double period) noexcept;
   // Hands over the answers due at this tick.
   void deliver(std::int64_t tick, behaviors::Machine& machine) noexcept;
-  // Answers this tick's requests, to be delivered later. Requests beyond the capacity are refused
-  // and answered as failed.
+  // Answers this tick's requests, to be delivered later. Requests beyond the capacity stay without
+  // an answer, as from a planner that died: their deadline reports it.
   void take(std::int64_t tick, behaviors::Machine& machine) noexcept;
 
  private:

@@ -28,6 +28,7 @@ SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
     finite &= std::isfinite(state.p_WB[k]) && std::isfinite(state.v_WB[k]) &&
               std::isfinite(state.w_WB_B[k]);
   }
+  for (const double q : state.q_WB) finite &= std::isfinite(q);
   if (!finite) findings.add(Fault::non_finite);
 
   double ground = state.p_WB[2];

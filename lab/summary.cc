@@ -62,8 +62,9 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["foot_placement_m"] = f.placements > 0
                                 ? Json{{"mean", f.placement_mean}, {"max", f.placement_max}}
                                 : Json();
-  out["max_torque_step_Nm"] = f.max_torque_step;
-  out["peak_torque_Nm"] = f.peak_torque;
+  const bool settled = f.roll.count > 0;  // the run was long enough for these to count
+  out["max_torque_step_Nm"] = settled ? Json(f.max_torque_step) : Json();
+  out["peak_torque_Nm"] = settled ? Json(f.peak_torque) : Json();
   out["goal_error_m"] = f.steps > 0 ? Json(f.goal_error) : Json();
   out["path_length_m"] = f.path_length;
   out["internal_force"] = internal_json(f);

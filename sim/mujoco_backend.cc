@@ -32,9 +32,13 @@ int foot_geom(const mjModel* m, const mjData* d, int site) {
 
 }  // namespace
 
+MujocoBackend::MujocoBackend(Empty, const model::RobotDescription& robot,
+                             const WorldDescription& world, std::uint64_t seed)
+    : robot_(robot), world_(world), seed_(seed) {}
+
 MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world,
                              std::uint64_t seed)
-    : robot_(robot), world_(world), seed_(seed) {
+    : MujocoBackend(Empty{}, robot, world, seed) {
   model_ = model::compile_mjcf(scene_xml(robot, world), robot.model_path);
   data_ = mj_makeData(model_);
   mj_forward(model_, data_);
@@ -72,6 +76,7 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
 }
 
 MujocoBackend::~MujocoBackend() {
+  core::set_mujoco_running(false, nullptr);
   mj_deleteData(data_);
   mj_deleteModel(model_);
 }
@@ -102,6 +107,8 @@ void MujocoBackend::start() {
   tick_ = 0;
   stopped_ = false;
   warnings_at_start_ = warnings();
+  // From here an error inside MuJoCo must not unwind through the tick.
+  core::set_mujoco_running(true, nullptr);
 }
 
 std::int64_t MujocoBackend::warnings() const noexcept {
@@ -222,6 +229,9 @@ PhysicsFacts MujocoBackend::facts() const {
   return f;
 }
 
-void MujocoBackend::safe_stop() noexcept { stopped_ = true; }
+void MujocoBackend::safe_stop() noexcept {
+  stopped_ = true;
+  core::set_mujoco_running(false, nullptr);
+}
 
 }  // namespace footfall::sim

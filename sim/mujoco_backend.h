@@ -43,6 +43,8 @@ class MujocoBackend final : public hal::Hardware {
   MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world,
                 std::uint64_t seed);
   ~MujocoBackend() override;
+  MujocoBackend(const MujocoBackend&) = delete;
+  MujocoBackend& operator=(const MujocoBackend&) = delete;
 
   std::string name() const override { return "mujoco"; }
   void start() override;
@@ -60,6 +62,11 @@ class MujocoBackend final : public hal::Hardware {
   mjData_* data() noexcept { return data_; }
 
  private:
+  // Nothing compiled yet; the public constructor goes on from here, so that what it has compiled is
+  // freed if it throws.
+  struct Empty {};
+  MujocoBackend(Empty, const model::RobotDescription& robot, const WorldDescription& world,
+                std::uint64_t seed);
   void apply_pushes() noexcept;
   void sense_contacts(hal::Sensors& sensors) noexcept;
   std::int64_t warnings() const noexcept;

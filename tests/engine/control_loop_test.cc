@@ -171,21 +171,5 @@ TEST(ControlLoop, TwoRunsAreEqualBitForBitAndSoAreTheirLogs) {
   EXPECT_TRUE(logs[0] == logs[1]);
 }
 
-TEST(ControlLoop, ASecondStartRepeatsTheRun) {
-  Rig rig("balance", 3);
-  std::vector<double> end;
-  for (int run = 0; run < 2; ++run) {
-    rig.loop->start();
-    for (int k = 0; k < 200; ++k) rig.loop->tick();
-    EXPECT_EQ(rig.loop->ticks(), 200);
-    const double* q = rig.loop->sensors().q.data();
-    if (run == 0) {
-      end.assign(q, q + 6);
-    } else {
-      EXPECT_EQ(end, std::vector<double>(q, q + 6));
-    }
-  }
-}
-
 }  // namespace
 }  // namespace footfall::tests

@@ -64,25 +64,28 @@ INSTANTIATE_TEST_SUITE_P(All, NotANumber,
                          testing::Values(std::numeric_limits<double>::quiet_NaN(),
                                          std::numeric_limits<double>::infinity()));
 
-TEST(Faults, ANotANumberOfTheBaseEntersTheSafeStateByDefault) {
+TEST(Faults, ANotANumberOfTheBaseStopsTheLoopByDefault) {
   StubRig rig(kHold, kHeavy);
   rig.hardware->spoil = [](hal::Sensors& sensors, std::int64_t tick) {
     if (tick == 20) sensors.v_WB[1] = std::nan("");
   };
   rig.loop->start();
   run(rig, 40);
-  EXPECT_EQ(rig.state(), "limp");
+  EXPECT_EQ(rig.loop->state(), LoopState::stopped);
   EXPECT_EQ(rig.faults(Fault::non_finite), 1);
 }
 
-TEST(Faults, AnOrientationThatIsNotANumberIsAFault) {
-  StubRig rig(kHold, kHeavy);
+TEST(Faults, AnOrientationThatIsNotANumberIsAFaultWhoseReactionIsTheRobots) {
+  StubRig rig(kHold, kHeavy, nullptr, [](behaviors::Behavior& b) {
+    b.robot.reactions[static_cast<std::size_t>(Fault::non_finite)] = core::Reaction::safe_state;
+  });
   rig.hardware->spoil = [](hal::Sensors& sensors, std::int64_t tick) {
     if (tick == 20) sensors.q_WB[2] = std::nan("");
   };
   rig.loop->start();
   run(rig, 40);
-  EXPECT_GE(rig.faults(Fault::non_finite), 1);
+  EXPECT_EQ(rig.faults(Fault::non_finite), 1);
+  EXPECT_EQ(rig.loop->state(), LoopState::running);
   EXPECT_EQ(rig.state(), "limp");
 }
 
@@ -121,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
                              s.q_WB = {std::cos(0.45), std::sin(0.45), 0, 0};  // 0.9 rad
                            }},
                     Fallen{"body", [](hal::Sensors& s) { s.body_contact = true; }}),
-    [](const testing::TestParamInfo<Fallen>& info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<Fallen>& way) { return std::string(way.param.name); });
 
 TEST(Faults, ATiltJustInsideTheLimitIsNoFall) {
   StubRig rig(kHold, kHeavy);
@@ -177,9 +180,9 @@ TEST(Faults, ASafeStopEntersTheSafeStateAndStopsTheHardware) {
   rig.loop->start();
   run(rig, 5);
   rig.loop->safe_stop();
-  EXPECT_EQ(rig.state(), "limp");
   rig.hardware->spoil = [](hal::Sensors& s, std::int64_t) { s.qd[0] = 3.0; };
   run(rig, 2);
+  EXPECT_EQ(rig.state(), "limp");
   EXPECT_GT(std::abs(rig.loop->commands().tau[0]), 0.0);
   EXPECT_EQ(rig.loop->sensors().tau[0], 0.0);  // commanded, but no torque acts any more
 }

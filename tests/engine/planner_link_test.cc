@@ -63,14 +63,13 @@ struct Link {
 };
 
 TEST(PlannerLink, AnAnswerArrivesExactlyTheLatencyLater) {
-  for (const int latency : {1, 2, 3, 17}) {
+  for (const int latency : {1, 2, 3, 4}) {
     Link link(latency);
     for (int k = 0; k < 60; ++k) {
       link.state.v_WB[0] = 0.001 * k;  // each tick has its own velocity
       link.tick();
       // The answer that came at tick k is of the state at tick k - latency.
-      if (k >= latency) EXPECT_NEAR(link.predicted(0), 0.001 * (k - latency), 1e-12) << k;
-      if (k < latency) EXPECT_EQ(link.predicted(0), 0.0);
+      EXPECT_NEAR(link.predicted(0), k < latency ? 0.0 : 0.001 * (k - latency), 1e-12) << k;
     }
   }
 }

@@ -253,18 +253,6 @@ TEST(FootPlanner, AFarGoalPullsNoHarderThanItsLimit) {
   EXPECT_TRUE(plan.ok);
 }
 
-// The goal moves while the step lasts: what counts is where it is at the switch.
-TEST(FootPlanner, AMovingGoalIsTakenWhereItWillBeAtTheSwitch) {
-  FootPlannerSpec spec;
-  spec.kappa = {0.4, 0.4};
-  FootPlannerInput in = standing();
-  in.goal_vel = {0.3, -0.1};
-  FootPlannerInput later = standing();
-  later.goal = {0.3 * in.switch_in, -0.1 * in.switch_in};
-  EXPECT_NEAR(plan_foot(spec, in).target[0], plan_foot(spec, later).target[0], 1e-12);
-  EXPECT_NEAR(plan_foot(spec, in).target[1], plan_foot(spec, later).target[1], 1e-12);
-}
-
 // The swing-time rule: landing lasts until the predicted lateral speed is reached.
 TEST(FootPlanner, TheExtensionEndsWhenTheLateralSpeedIsReached) {
   FootPlannerSpec spec;

@@ -58,9 +58,9 @@ def last_json(text):
     raise ValueError("no JSON object at the end of the output")
 
 
-def run(behavior, *arguments, log=False, timeout=900):
+def run(behavior, *arguments, log=False, timeout=7200 if WANT else 900):
     """One `footfall run ... --json`; returns its object. A fall is a result; bad input or a hang is not."""
-    command = [FOOTFALL, "run", behavior, "--json", "--quiet", *([] if log else ["--no-log"]), *map(str, arguments)]
+    command = [FOOTFALL, "run", behavior, "--json", "--quiet", "--no-report" if log else "--no-log", *map(str, arguments)]
     done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           timeout=timeout)
     if done.returncode not in (0, 1):

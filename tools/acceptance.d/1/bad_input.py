@@ -51,7 +51,7 @@ def cases(folder):
 
 def judge(name, arguments, folder):
     """None if the answer is right, else what is wrong with it."""
-    command = [FOOTFALL, *arguments, "--for", "1s", *([] if "--log" in arguments else ["--no-log"])]
+    command = [FOOTFALL, *arguments, "--for", "1s", "--no-report" if "--log" in arguments else "--no-log"]
     try:
         done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
     except subprocess.TimeoutExpired:

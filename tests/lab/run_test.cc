@@ -1,0 +1,288 @@
+// Runs: what ends them, when pushes fire, and that the figures are those of the logged signals.
+#include "lab/run.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "lab/log_reader.h"
+#include "lab/run_log.h"
+#include "lab/summary.h"
+#include "tests/support/rig.h"
+
+namespace footfall::tests {
+namespace {
+
+std::string temporary(const std::string& name) {
+  return testing::TempDir() + "footfall_" + std::to_string(getpid()) + "_" + name;
+}
+
+// Runs and reads back the log of every tick.
+struct Logged {
+  lab::RunResult result;
+  lab::Log log;
+};
+
+Logged run_logged(Rig& rig, lab::RunSpec& spec) {
+  const std::string path = temporary("run.mcap");
+  engine::LogWriter writer(path, rig.behavior->signals,
+                           lab::make_log_header(*rig.behavior, "flat", "mujoco", 1));
+  spec.log = &writer;
+  spec.log_every = 1;
+  Logged logged{lab::run(*rig.loop, spec), {}};
+  writer.close();
+  logged.log = lab::read_log(path);
+  std::filesystem::remove(path);
+  return logged;
+}
+
+std::vector<double> times_of(const lab::Log& log, const std::string& kind) {
+  std::vector<double> times;
+  for (const lab::LoggedEvent& event : log.events) {
+    if (event.kind == kind) times.push_back(event.time);
+  }
+  return times;
+}
+
+std::size_t row_at(const lab::Log& log, double time) {
+  std::size_t row = 0;
+  while (row + 1 < log.rows() && log.time[row] < time - 1e-6) ++row;
+  return row;
+}
+
+TEST(Run, EndsAfterTheStepsAskedFor) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_steps = 4;
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  EXPECT_EQ(result.end, lab::RunEnd::steps);
+  EXPECT_EQ(result.figures.steps, 4);
+  EXPECT_FALSE(result.figures.fell);
+  EXPECT_EQ(result.tick_time.count(), rig.loop->ticks());
+}
+
+TEST(Run, EndsAtTheTimeAskedFor) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 0.5;
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  EXPECT_EQ(result.end, lab::RunEnd::time);
+  EXPECT_EQ(rig.loop->ticks(), 750);
+  EXPECT_DOUBLE_EQ(result.figures.time, 0.5);
+}
+
+TEST(Run, EndsWithAFall) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 10.0;
+  lab::ScheduledEvent push;
+  push.at_time = 0.2;
+  push.fire = [&] { rig.backend->push(rig.backend->find_body("torso"), 800.0, 1.0, 0.2); };
+  spec.events.push_back(push);
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  EXPECT_EQ(result.end, lab::RunEnd::fall);
+  EXPECT_TRUE(result.figures.fell);
+  EXPECT_LT(result.figures.time, 3.0);
+  EXPECT_EQ(result.faults.of(core::Fault::fall), 1);
+}
+
+TEST(Run, EndsWhereTheBehaviorEnds) {
+  const std::string path = temporary("final.yaml");
+  std::ofstream(path) << "behavior: 1\nrobot: hume\nmachine:\n  states:\n"
+                         "    stand: {contacts: [right_foot, left_foot], after: 100 ms, to: done}\n"
+                         "    done: {type: final}\n";
+  Rig rig(path);
+  lab::RunSpec spec;
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  std::filesystem::remove(path);
+  EXPECT_EQ(result.end, lab::RunEnd::finished);
+  EXPECT_NEAR(result.figures.time, 0.1, 2.0 / 1500.0);
+}
+
+TEST(Run, EndsWhenItIsStopped) {
+  Rig rig("balance");
+  std::atomic<bool> stop{false};
+  lab::RunSpec spec;
+  spec.stop = &stop;
+  lab::ScheduledEvent interrupt;
+  interrupt.at_time = 0.1;
+  interrupt.fire = [&] { stop = true; };
+  spec.events.push_back(interrupt);
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  EXPECT_EQ(result.end, lab::RunEnd::stopped);
+  EXPECT_EQ(rig.loop->ticks(), 151);  // the tick in which it was told is finished
+}
+
+TEST(Run, EndsWithAFaultWhoseReactionIsToStop) {
+  Rig rig("balance");
+  rig.behavior->robot.reactions[static_cast<std::size_t>(core::Fault::joint_limit)] =
+      core::Reaction::safe_stop;
+  rig.behavior->robot.joints[2].position_max = rig.behavior->robot.joints[2].posture - 0.1;
+  lab::RunSpec spec;
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  EXPECT_EQ(result.end, lab::RunEnd::fault);
+  EXPECT_EQ(rig.loop->ticks(), 1);
+}
+
+TEST(Run, APushAtAStepAndPhaseFiresOnceThere) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_steps = 8;
+  int fired = 0;
+  lab::ScheduledEvent push;
+  push.at_step = 4;
+  push.phase = 0.5;
+  push.label = "here";
+  push.fire = [&] { ++fired; };
+  spec.events.push_back(push);
+  const Logged run = run_logged(rig, spec);
+  EXPECT_EQ(fired, 1);
+  const std::vector<double> steps = times_of(run.log, "step");
+  const std::vector<double> pushes = times_of(run.log, "push");
+  ASSERT_EQ(pushes.size(), 1U);
+  ASSERT_EQ(steps.size(), 8U);
+  // Half of the last whole step's duration after the fourth, to the tick.
+  EXPECT_NEAR(pushes[0], steps[3] + 0.5 * (steps[3] - steps[2]), 1.01 / 1500.0);
+}
+
+TEST(Run, AGoalVelocityMovesTheGoal) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 1.0;
+  spec.goal = {{0.02, 0.01}};
+  spec.goal_velocity = {{0.1, -0.05}};
+  const Logged run = run_logged(rig, spec);
+  const auto* x = run.log.values("goal.x");
+  const auto* y = run.log.values("goal.y");
+  ASSERT_TRUE(x && y);
+  ASSERT_EQ(run.log.rows(), 1500U);
+  for (const std::size_t row : {1UL, 700UL, 1400UL}) {
+    EXPECT_NEAR((*x)[row], 0.02 + 0.1 * run.log.time[row], 1e-6);
+    EXPECT_NEAR((*y)[row], 0.01 - 0.05 * run.log.time[row], 1e-6);
+  }
+}
+
+// Every figure again from the log, by its definition.
+TEST(RunFigures, AreThoseOfTheLoggedSignals) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 5.0;
+  const Logged run = run_logged(rig, spec);
+  const lab::Log& log = run.log;
+  const lab::RunFigures& f = run.result.figures;
+  ASSERT_EQ(log.rows(), 7500U);
+  const auto& column = [&](const std::string& name) -> const std::vector<float>& {
+    const auto* values = log.values(name);
+    if (!values) throw std::runtime_error("no signal " + name);
+    return *values;
+  };
+  const auto &x = column("com.pos.x"), &y = column("com.pos.y");
+  const auto &roll = column("base.rpy.roll"), &yaw = column("base.rpy.yaw");
+  const auto& step = column("torque.step");
+  double path = 0.0, roll_max = 0.0, yaw_max = 0.0, roll_squares = 0.0, torque = 0.0, steps = 0.0;
+  double count = 0.0;
+  for (std::size_t row = 0; row < log.rows(); ++row) {
+    if (row > 0) path += std::hypot(x[row] - x[row - 1], y[row] - y[row - 1]);
+    if (log.time[row] < 2.0) continue;
+    count += 1.0;
+    roll_max = std::max(roll_max, std::abs(static_cast<double>(roll[row])));
+    roll_squares += static_cast<double>(roll[row]) * static_cast<double>(roll[row]);
+    yaw_max = std::max(yaw_max, std::abs(static_cast<double>(yaw[row])));
+    steps = std::max(steps, static_cast<double>(step[row]));
+    for (const auto& joint : rig.behavior->robot.joints) {
+      const float tau = column("joint." + joint.name + ".command")[row];
+      torque = std::max(torque, std::abs(static_cast<double>(tau)));
+    }
+  }
+  // Logged as float: 6e-8 of each value; the path adds 7500 differences of numbers below 0.3 m.
+  EXPECT_NEAR(f.path_length, path, 7500 * 2 * 0.3 * 6e-8);
+  EXPECT_NEAR(f.roll.max, roll_max, 1e-6);  // its reference is 0
+  EXPECT_NEAR(f.roll.rms(), std::sqrt(roll_squares / count), 1e-6);
+  EXPECT_NEAR(f.yaw.max, yaw_max, 1e-6);
+  EXPECT_NEAR(f.max_torque_step, steps, 1e-5 * steps);
+  EXPECT_NEAR(f.peak_torque, torque, 1e-5 * torque);
+
+  const std::vector<double> at = times_of(log, "step");
+  ASSERT_EQ(static_cast<std::int64_t>(at.size()), f.steps);
+  ASSERT_GT(f.steps, 10);
+  ASSERT_LT(f.steps, 51);  // the mean is over all of them
+  const std::size_t a = row_at(log, at.front()), b = row_at(log, at.back());
+  const double duration = at.back() - at.front();
+  EXPECT_NEAR(f.mean_velocity_last_50[0], (x[b] - x[a]) / duration, 1e-6);
+  EXPECT_NEAR(f.mean_velocity_last_50[1], (y[b] - y[a]) / duration, 1e-6);
+  EXPECT_NEAR(f.mean_step_time, duration / static_cast<double>(f.steps - 1), 1e-6);
+  double goal_error = 0.0;
+  for (std::size_t k = at.size() - 10; k < at.size(); ++k) {
+    const std::size_t row = row_at(log, at[k]);
+    goal_error += std::hypot(x[row], y[row]) / 10.0;
+  }
+  EXPECT_NEAR(f.goal_error, goal_error, 1e-6);
+}
+
+TEST(Summary, HasEveryKeyThatScriptsRelyOn) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 3.0;
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  const auto json = lab::summary_json({"balance", "hume", "flat", "mujoco", 7, "out/log.mcap", ""}, result);
+  for (const char* key :
+       {"behavior", "robot", "world", "backend", "seed", "end", "steps", "time_s", "fell", "error",
+        "foot_placement_m", "max_torque_step_Nm", "peak_torque_Nm", "goal_error_m", "path_length_m",
+        "internal_force", "faults", "tick_us", "allocations", "real_time_factor", "log"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  for (const char* angle : {"roll", "pitch", "yaw", "height"}) {
+    EXPECT_TRUE(json["error"][angle]["rms"].is_number()) << angle;
+    EXPECT_TRUE(json["error"][angle]["max"].is_number()) << angle;
+  }
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["end"], "time");
+  EXPECT_EQ(json["fell"], false);
+  EXPECT_TRUE(json["foot_placement_m"]["mean"].is_number());
+  EXPECT_TRUE(json["tick_us"]["p999"].is_number());
+  EXPECT_TRUE(json["allocations"].is_null());  // this program does not count them
+  EXPECT_TRUE(json["faults"].is_object());
+}
+
+TEST(Summary, WhatDoesNotApplyIsNull) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 0.1;  // before errors count and before any step
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  const auto json = lab::summary_json({"balance", "hume", "flat", "mujoco", 1, "", ""}, result);
+  for (const char* angle : {"roll", "pitch", "yaw", "height"}) {
+    EXPECT_TRUE(json["error"][angle].is_null()) << angle;
+  }
+  for (const char* key : {"foot_placement_m", "goal_error_m", "log", "max_torque_step_Nm", "peak_torque_Nm"}) {
+    EXPECT_TRUE(json[key].is_null()) << key;
+  }
+  EXPECT_EQ(json["steps"], 0);
+}
+
+TEST(Summary, WhatAWallClockMeasuredIsInASecondFile) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 0.1;
+  const lab::RunResult result = lab::run(*rig.loop, spec);
+  const lab::RunIdentity id = {"balance", "hume", "flat", "mujoco", 1, "", ""};
+  const auto physics = lab::summary_json(id, result, true);
+  EXPECT_FALSE(physics.contains("tick_us"));
+  EXPECT_FALSE(physics.contains("real_time_factor"));
+  EXPECT_TRUE(lab::timing_json(result).contains("tick_us"));
+}
+
+TEST(ErrorFigure, IsRootMeanSquareAndLargestMagnitude) {
+  lab::ErrorFigure figure;
+  EXPECT_EQ(figure.rms(), 0.0);
+  figure.add(3.0);
+  figure.add(-4.0);
+  EXPECT_DOUBLE_EQ(figure.rms(), std::sqrt(12.5));
+  EXPECT_EQ(figure.max, 4.0);
+}
+
+}  // namespace
+}  // namespace footfall::tests
