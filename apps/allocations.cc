@@ -8,9 +8,11 @@
 namespace {
 thread_local bool t_armed = false;
 thread_local std::int64_t t_count = 0;
+#ifndef FOOTFALL_SANITIZED
 void count() {
   if (t_armed) ++t_count;
 }
+#endif
 }  // namespace
 
 namespace footfall::apps {

@@ -85,6 +85,9 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
 }
 
 void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& spec) {
+  if (options.pushes.size() > sim::kMaxPushes) {
+    throw InputError(fmt::format("--push: error: at most {} of them, got {}", sim::kMaxPushes, options.pushes.size()));
+  }
   for (const std::string& text : options.pushes) {
     std::string error;
     const auto push = sim::parse_push(text, error);

@@ -2,13 +2,31 @@
 #include "apps/run_options.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <stdexcept>
 
 #include "core/units.h"
 
 namespace footfall::apps {
 
+namespace {
+
+// CLI11's own message lists the limits of a double.
+CLI::Validator at_least(std::int64_t least, const char* what) {
+  return CLI::Validator(
+      [least, what](std::string& text) {
+        std::int64_t value = 0;
+        const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool good = problem == std::errc() && end == text.data() + text.size() && value >= least;
+        return good ? std::string() : "expected " + std::string(what) + ", got '" + text + "'";
+      },
+      "", "");
+}
+
+}  // namespace
+
 void add_run_options(CLI::App& command, RunOptions& o) {
+  const CLI::Validator positive = at_least(1, "a whole number above 0");
   command.add_option("BEHAVIOR", o.behavior, "Behavior file, or the name of one in behaviors/library")->required();
   command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's own");
   command.add_option("--backend", o.backend, "mujoco (physics) or stub (double integrators)")
@@ -16,8 +34,10 @@ void add_run_options(CLI::App& command, RunOptions& o) {
       ->capture_default_str();
   command.add_option("--world", o.world, "World file, or the name of one in sim/worlds")->capture_default_str();
   command.add_option("--for", o.duration_text, "How long at most, e.g. 20s (default 20 s, with --steps N 20 s + N s)");
-  command.add_option("--steps", o.steps, "Ends after this many steps")->check(CLI::PositiveNumber);
-  command.add_option("--seed", o.seed, "Seed of everything random in the world")->capture_default_str();
+  command.add_option("--steps", o.steps, "Ends after this many steps")->check(positive);
+  command.add_option("--seed", o.seed, "Seed of everything random in the world")
+      ->check(at_least(0, "a whole number from 0 on"))
+      ->capture_default_str();
   command.add_option("--set", o.set, "NAME=VALUE: a parameter, gain or planner value, e.g. lift_time=160ms");
   command.add_option("--push", o.pushes,
                      "FORCE_N,DURATION_S,DIRECTION_DEG,AT with AT a time or `step N phase P`; direction in the "
@@ -29,7 +49,7 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_flag("--no-report", o.no_report, "No report page beside the log");
   command.add_option("--film", o.film, "Writes the run as MP4 (needs ffmpeg)");
   command.add_flag("--log-all", o.log_all, "Logs every tick");
-  command.add_option("--log-every", o.log_every, "Logs every N-th tick")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--log-every", o.log_every, "Logs every N-th tick")->check(positive)->capture_default_str();
   command.add_flag("--realtime", o.realtime, "Paced by the wall clock");
   command.add_flag("--json", o.json, "One JSON object as the last line on stdout");
   command.add_flag("--quiet", o.quiet, "No status line, no summary");

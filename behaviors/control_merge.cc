@@ -10,10 +10,6 @@ namespace {
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
-// Part of a trajectory's time after which a changing `to` is no longer followed: what is left would
-// ask for accelerations without bound.
-constexpr double kLastRetarget = 0.8;
-
 }  // namespace
 
 ControlMerge::ControlMerge(const Behavior& behavior, Statechart& statechart)
@@ -173,7 +169,7 @@ void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index) n
   command.weight = value_or(spec.weight, 1.0, bank, entry);
   command.acceleration_limit = value_or(spec.acceleration_limit, 0.0, bank, entry);
   command.integral_limit = value_or(spec.integral_limit, 0.0, bank, entry);
-  if (spec.reference.retarget && !bank.frozen) retarget(bank, spec, command);
+  if (spec.reference.retarget > 0.0 && !bank.frozen) retarget(bank, spec, command);
   for (int k = 0; k < spec.axes.count; ++k) {
     const AxisSpec& axis = behavior_.axes[at(spec.axes.first + k)];
     AxisState& state = bank.axes[at(command.first_axis + k)];
@@ -207,7 +203,7 @@ void ControlMerge::retarget(Bank& bank, const TaskSpec& spec,
     const double to = value_or(axis.value, state.segment.to, bank, entry);
     const double t = static_cast<double>(context.tick - state.start_tick) * context.period;
     const double left = state.segment.duration - t;
-    if (to == state.segment.to || left < (1.0 - kLastRetarget) * state.over) continue;
+    if (to == state.segment.to || left < (1.0 - spec.reference.retarget) * state.over) continue;
     const Shape shape =
         spec.reference.shape == Shape::polynomial3 ? Shape::polynomial3 : Shape::polynomial5;
     const Motion now = sample(state.segment, t);

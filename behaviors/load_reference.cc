@@ -9,6 +9,16 @@
 namespace footfall::behaviors {
 namespace {
 
+// `true`, `false`, or the part of the trajectory's time during which it follows.
+double read_retarget(const core::YamlNode& node, core::Diagnostics& diagnostics) {
+  constexpr double kUsual = 0.8;
+  if (node.scalar == "true" || node.scalar == "false" || !node.is_scalar()) {
+    return core::read_bool(node, diagnostics).value_or(false) ? kUsual : 0.0;
+  }
+  return core::read_bounded(node, core::kNone, 0.0, 0.95, diagnostics, "true, false or a part of the time")
+      .value_or(0.0);
+}
+
 // Where the values of a task's axes are written.
 struct AxesScope {
   const std::vector<std::string>& names;
@@ -178,7 +188,7 @@ void compile_trajectory(LoadContext& context, const core::YamlNode& map, AxesSco
     for (std::size_t k = 0; k < out.size(); ++k) out[k].end_velocity = speeds[k];
   }
   if (const auto* retarget = map.find("retarget")) {
-    reference.retarget = core::read_bool(*retarget, context.diagnostics).value_or(false);
+    reference.retarget = read_retarget(*retarget, context.diagnostics);
   }
 }
 

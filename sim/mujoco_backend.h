@@ -23,6 +23,7 @@ struct ActivePush {
   std::array<double, 3> force{};  // N, world
   int steps_left = 0;             // physics steps
 };
+inline constexpr std::size_t kMaxPushes = 32;  // at once
 
 // The facts of the compiled physics that every figure rests on; printed with a run's summary.
 struct PhysicsFacts {
@@ -53,7 +54,7 @@ class MujocoBackend final : public hal::Hardware {
   void safe_stop() noexcept override;
 
   // Begins a push on a body's CoM; direction in rad from the robot's heading, 0 forward, 90° left.
-  // Names were checked by find_body(). At most four at once; false if there are more.
+  // Names were checked by find_body(). At most kMaxPushes at once; false if there are more.
   bool push(int body, double force, double direction, double duration) noexcept;
   int find_body(const std::string& name) const;  // -1: none
   PhysicsFacts facts() const;
@@ -82,7 +83,7 @@ class MujocoBackend final : public hal::Hardware {
   std::vector<double> torque_limit_;
   std::vector<std::vector<double>> delay_line_;  // commands on their way, one a physics step
   std::size_t delay_head_ = 0;
-  std::array<ActivePush, 4> pushes_{};
+  std::array<ActivePush, kMaxPushes> pushes_{};
   std::int64_t warnings_at_start_ = 0;
   std::int64_t tick_ = 0;
   bool stopped_ = false;

@@ -9,7 +9,7 @@ import tempfile
 import time
 import unittest
 
-BINARY, SOURCE = sys.argv[1:3]
+BINARY, SOURCE = map(os.path.abspath, sys.argv[1:3])
 
 STAND = """behavior: 1
 robot: hume
@@ -104,6 +104,10 @@ class BadInput(Case):
             with self.subTest(push):
                 self.refused(self.run_it("balance", "--push=" + push), 2, "--push")
 
+    def test_more_pushes_than_there_is_room_for(self):
+        pushes = ["--push=1,0.1,90,1"] * 33
+        self.refused(self.run_it("balance", *pushes), 2, "--push", "33")
+
     def test_a_push_without_physics(self):
         self.refused(self.run_it("balance", "--backend", "stub", "--push", "40,0.1,90,1"), 2, "stub")
 
@@ -136,7 +140,7 @@ class BadInput(Case):
     def test_set(self):
         self.refused(self.run_it("balance", "--set", "lift_tine=150ms"), 2, "lift_tine", "lift_time")
         self.refused(self.run_it("balance", "--set", "lift_time"), 2, "lift_time")
-        self.refused(self.run_it("balance", "--set", "lift_time=3 kg"), 2)
+        self.refused(self.run_it("balance", "--set", "lift_time=3s"), 2, "lift_time")
 
     def test_a_behavior_without_robot(self):
         self.refused(self.run_it(self.write("b.yaml", CHART)), 2, "robot")
@@ -144,7 +148,9 @@ class BadInput(Case):
     def test_options(self):
         self.refused(self.run_it("balance", "--fro", "3s"), 2, "--fro")
         self.refused(self.run_it("balance", "--steps", "-3"), 2, "--steps")
+        self.refused(self.run_it("balance", "--log-every", "0"), 2, "--log-every", "above 0, got '0'")
         self.refused(self.run_it("balance", "--seed", "x"), 2, "--seed")
+        self.refused(self.run_it("balance", "--seed=-1"), 2, "--seed")
         self.refused(self.footfall("walk"), 2)
         self.refused(self.footfall(), 2)
 

@@ -262,6 +262,18 @@ machine:
   run.run_to(150);
   EXPECT_DOUBLE_EQ(run.axis("h", 0).ref, 1.5);
 }
+TEST(Machine, RetargetEndsAtThePartOfTheTimeThatIsGiven) {
+  Runner run(hume(R"(
+parameters: {to: {value: 1 m, range: [0 m, 9 m], live: true}}
+machine:
+  tasks: {h: {type: com_position, axes: [z], gains: {kp: 1}, reference: {trajectory: polynomial, order: 3, to: $to, over: 100 ms, retarget: 50 %}}}
+)"));
+  run.start();
+  run.run_to(80);  // 80 of 150 ticks: past the half
+  run.parameter("to") = 1.5;
+  run.run_to(160);
+  EXPECT_DOUBLE_EQ(run.axis("h", 0).ref, 1.0);
+}
 TEST(Machine, WithoutRetargetTheGoalIsReadAtEntry) {
   Runner run(hume(R"(
 parameters: {to: {value: 1 m, range: [0 m, 9 m], live: true}}

@@ -161,8 +161,8 @@ TEST(Run, AGoalVelocityMovesTheGoal) {
   ASSERT_TRUE(x && y);
   ASSERT_EQ(run.log.rows(), 1500U);
   for (const std::size_t row : {1UL, 700UL, 1400UL}) {
-    EXPECT_NEAR((*x)[row], 0.02 + 0.1 * run.log.time[row], 1e-6);
-    EXPECT_NEAR((*y)[row], 0.01 - 0.05 * run.log.time[row], 1e-6);
+    EXPECT_NEAR(static_cast<double>((*x)[row]), 0.02 + 0.1 * run.log.time[row], 1e-6);
+    EXPECT_NEAR(static_cast<double>((*y)[row]), 0.01 - 0.05 * run.log.time[row], 1e-6);
   }
 }
 
@@ -175,28 +175,29 @@ TEST(RunFigures, AreThoseOfTheLoggedSignals) {
   const lab::Log& log = run.log;
   const lab::RunFigures& f = run.result.figures;
   ASSERT_EQ(log.rows(), 7500U);
-  const auto& column = [&](const std::string& name) -> const std::vector<float>& {
+  const auto column = [&](const std::string& name) {
     const auto* values = log.values(name);
     if (!values) throw std::runtime_error("no signal " + name);
-    return *values;
+    return std::vector<double>(values->begin(), values->end());
   };
-  const auto &x = column("com.pos.x"), &y = column("com.pos.y");
-  const auto &roll = column("base.rpy.roll"), &yaw = column("base.rpy.yaw");
-  const auto& step = column("torque.step");
+  const auto x = column("com.pos.x"), y = column("com.pos.y");
+  const auto roll = column("base.rpy.roll"), yaw = column("base.rpy.yaw");
+  const auto step = column("torque.step");
+  std::vector<std::vector<double>> command;
+  for (const auto& joint : rig.behavior->robot.joints) {
+    command.push_back(column("joint." + joint.name + ".command"));
+  }
   double path = 0.0, roll_max = 0.0, yaw_max = 0.0, roll_squares = 0.0, torque = 0.0, steps = 0.0;
   double count = 0.0;
   for (std::size_t row = 0; row < log.rows(); ++row) {
     if (row > 0) path += std::hypot(x[row] - x[row - 1], y[row] - y[row - 1]);
     if (log.time[row] < 2.0) continue;
     count += 1.0;
-    roll_max = std::max(roll_max, std::abs(static_cast<double>(roll[row])));
-    roll_squares += static_cast<double>(roll[row]) * static_cast<double>(roll[row]);
-    yaw_max = std::max(yaw_max, std::abs(static_cast<double>(yaw[row])));
-    steps = std::max(steps, static_cast<double>(step[row]));
-    for (const auto& joint : rig.behavior->robot.joints) {
-      const float tau = column("joint." + joint.name + ".command")[row];
-      torque = std::max(torque, std::abs(static_cast<double>(tau)));
-    }
+    roll_max = std::max(roll_max, std::abs(roll[row]));
+    roll_squares += roll[row] * roll[row];
+    yaw_max = std::max(yaw_max, std::abs(yaw[row]));
+    steps = std::max(steps, step[row]);
+    for (const auto& tau : command) torque = std::max(torque, std::abs(tau[row]));
   }
   // Logged as float: 6e-8 of each value; the path adds 7500 differences of numbers below 0.3 m.
   EXPECT_NEAR(f.path_length, path, 7500 * 2 * 0.3 * 6e-8);
