@@ -1,5 +1,5 @@
-// malloc interposition; see allocations.h. The counters are plain thread-local integers, so that the
-// interposed functions allocate nothing themselves.
+// malloc interposition; see allocations.h. The counters are plain thread-local integers, so that
+// the interposed functions allocate nothing themselves.
 #include "apps/allocations.h"
 
 #include <cerrno>

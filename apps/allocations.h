@@ -6,7 +6,7 @@
 namespace footfall::apps {
 
 void arm_allocations(bool on);
-std::int64_t allocations();        // counted so far in this thread
-bool allocations_are_counted();    // false in sanitizer builds, which own malloc
+std::int64_t allocations();      // counted so far in this thread
+bool allocations_are_counted();  // false in sanitizer builds, which own malloc
 
 }  // namespace footfall::apps

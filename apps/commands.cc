@@ -20,6 +20,10 @@ std::vector<std::string> search_path() {
       begin = end + 1;
     }
   }
+  // An installed program finds its data beside itself, wherever it was moved to.
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) folders.push_back((program.parent_path() / "../share/footfall").lexically_normal().string());
   folders.emplace_back(FOOTFALL_SOURCE_DIR);
   folders.emplace_back(FOOTFALL_DATA_DIR);
   return folders;
@@ -52,7 +56,8 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
   return pairs;
 }
 
-std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path, const std::string& robot,
+std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
+                                                     const std::string& robot,
                                                      const std::vector<std::string>& set) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;

@@ -15,9 +15,9 @@ class App;
 namespace footfall::apps {
 
 inline constexpr int kGood = 0;
-inline constexpr int kRobotFailed = 1;   // the robot fell, or a test failed
-inline constexpr int kBadInput = 2;      // the input is wrong
-inline constexpr int kMachineFailed = 3; // the machine or the backend failed
+inline constexpr int kRobotFailed = 1;    // the robot fell, or a test failed
+inline constexpr int kBadInput = 2;       // the input is wrong
+inline constexpr int kMachineFailed = 3;  // the machine or the backend failed
 
 // Each adds its sub-command with a callback that sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
@@ -29,11 +29,13 @@ void add_signals_command(CLI::App& app, int& exit_code);
 // FOOTFALL_PATH (colons between), the source tree, the installed data.
 std::vector<std::string> search_path();
 
-// NAME itself if it is a file, else behaviors/library/NAME.yaml in the search path; NAME if nowhere.
+// NAME itself if it is a file, else behaviors/library/NAME.yaml in the search path; NAME if
+// nowhere.
 std::string find_behavior_file(const std::string& name);
 
 // Loads a behavior and prints every problem on stderr; nullptr if there were errors.
-std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path, const std::string& robot,
+std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
+                                                     const std::string& robot,
                                                      const std::vector<std::string>& set);
 
 // Splits NAME=VALUE texts; a text without `=` is reported as an error.

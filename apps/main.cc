@@ -8,9 +8,10 @@
 #include "lab/version.h"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Footfall executes behaviors for legged robots.\n"
-               "Exit codes: 0 good, 1 the robot fell or a test failed, 2 the input is wrong, "
-               "3 the machine or the backend failed."};
+  CLI::App app{
+      "Footfall executes behaviors for legged robots.\n"
+      "Exit codes: 0 good, 1 the robot fell or a test failed, 2 the input is wrong, "
+      "3 the machine or the backend failed."};
   app.name("footfall");
   app.set_version_flag("--version", footfall::lab::kVersion);
   app.require_subcommand(1);

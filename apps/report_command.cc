@@ -84,7 +84,8 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->add_flag("--no-strip", arguments->no_strip, "a page without pictures of the robot");
   command->add_flag("--static", arguments->static_plots, "plots as SVG, without script");
   command->footer("Example: footfall report out/demo -o report.html --strip strip.png");
-  command->callback([arguments, &exit_code] { exit_code = write_report_files(*arguments, stdout); });
+  command->callback(
+      [arguments, &exit_code] { exit_code = write_report_files(*arguments, stdout); });
 }
 
 }  // namespace footfall::apps

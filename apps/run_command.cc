@@ -41,8 +41,9 @@ sim::WorldDescription load_world(const std::string& name) {
   const std::string file = sim::find_world_file(name, search_path());
   sim::WorldDescription world;
   if (file.empty()) {
-    if (name != "flat") throw InputError(name + ": error: no such world file, and no sim/worlds/" + name +
-                                         ".yaml in the search path");
+    if (name != "flat")
+      throw InputError(name + ": error: no such world file, and no sim/worlds/" + name +
+                       ".yaml in the search path");
     return world;
   }
   world = sim::load_world(file, diagnostics);
@@ -77,8 +78,8 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
   backend.physics = fmt::format(
       "step 1/{:.0f} s, friction {:g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature {:g}, "
       "constraints {}, mocap bodies {}, mass {:.2f} kg",
-      1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max, f.armature_max,
-      f.equalities, f.mocap_bodies, f.mass);
+      1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max,
+      f.armature_max, f.equalities, f.mocap_bodies, f.mass);
   backend.mujoco = mujoco.get();
   backend.hardware = std::move(mujoco);
   return backend;
@@ -86,13 +87,16 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
 
 void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& spec) {
   if (options.pushes.size() > sim::kMaxPushes) {
-    throw InputError(fmt::format("--push: error: at most {} of them, got {}", sim::kMaxPushes, options.pushes.size()));
+    throw InputError(fmt::format("--push: error: at most {} of them, got {}", sim::kMaxPushes,
+                                 options.pushes.size()));
   }
   for (const std::string& text : options.pushes) {
     std::string error;
     const auto push = sim::parse_push(text, error);
     if (!push) throw InputError("--push: error: " + error);
-    if (!backend.mujoco) throw InputError("--push: error: the backend '" + options.backend + "' has no physics to push in");
+    if (!backend.mujoco)
+      throw InputError("--push: error: the backend '" + options.backend +
+                       "' has no physics to push in");
     const int body = backend.mujoco->find_body(push->body);
     if (body < 0) throw InputError("--push: error: the robot has no body '" + push->body + "'");
     lab::ScheduledEvent event;
@@ -104,7 +108,9 @@ void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& 
     }
     event.label = text;
     sim::MujocoBackend* mujoco = backend.mujoco;
-    event.fire = [mujoco, body, p = *push] { mujoco->push(body, p.force, p.direction, p.duration); };
+    event.fire = [mujoco, body, p = *push] {
+      mujoco->push(body, p.force, p.direction, p.duration);
+    };
     spec.events.push_back(std::move(event));
   }
 }
@@ -112,7 +118,8 @@ void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& 
 void set_goal(const RunOptions& options, const behaviors::Behavior& behavior, lab::RunSpec& spec) {
   if (options.goal.empty() && options.goal_velocity.empty()) return;
   if (!lab::has_goal(behavior)) {
-    throw InputError("--goal: error: '" + behavior.name + "' has no planner whose goal is a parameter");
+    throw InputError("--goal: error: '" + behavior.name +
+                     "' has no planner whose goal is a parameter");
   }
   std::string error;
   if (!options.goal.empty()) {
@@ -157,25 +164,33 @@ void write_file(const std::string& path, const std::string& text) {
   fs::rename(temporary, path);
 }
 
-std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options, const behaviors::Behavior& behavior,
-                                            const sim::WorldDescription& world, lab::RunIdentity& id) {
+std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
+                                            const behaviors::Behavior& behavior,
+                                            const sim::WorldDescription& world,
+                                            lab::RunIdentity& id) {
   if (options.no_log) return nullptr;
   std::error_code error;
   fs::create_directories(options.log, error);
-  if (error) throw std::runtime_error("cannot create the log's folder '" + options.log + "': " + error.message());
+  if (error)
+    throw std::runtime_error("cannot create the log's folder '" + options.log +
+                             "': " + error.message());
   id.log = options.log + "/log.mcap";
   return std::make_unique<engine::LogWriter>(
-      id.log, behavior.signals, lab::make_log_header(behavior, world.name, options.backend, options.seed));
+      id.log, behavior.signals,
+      lab::make_log_header(behavior, world.name, options.backend, options.seed));
 }
 
 int run_behavior(const RunOptions& options) {
   if (!options.film.empty() && (options.no_log || options.no_report)) {
-    throw InputError("--film: error: a film is made from the log with the report: leave out --no-log and --no-report");
+    throw InputError(
+        "--film: error: a film is made from the log with the report: leave out --no-log and "
+        "--no-report");
   }
   auto behavior = load_or_explain(options.behavior, options.robot, options.set);
   if (!behavior) return kBadInput;
   if (!behavior->has_robot) {
-    throw InputError(behavior->path + ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
+    throw InputError(behavior->path +
+                     ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
   const sim::WorldDescription world = load_world(options.world);
   Backend backend = make_backend(options, *behavior, world);
@@ -187,8 +202,9 @@ int run_behavior(const RunOptions& options) {
   lab::RunSpec spec = make_spec(options);
   schedule_pushes(options, backend, spec);
   set_goal(options, *behavior, spec);
-  lab::RunIdentity id = {behavior->name, behavior->robot.name, world.name, backend.hardware->name(),
-                         options.seed,   "",                   backend.physics};
+  lab::RunIdentity id = {behavior->name,           behavior->robot.name, world.name,
+                         backend.hardware->name(), options.seed,         "",
+                         backend.physics};
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
 
@@ -201,12 +217,16 @@ int run_behavior(const RunOptions& options) {
     write_file(options.log + "/summary.json", lab::summary_json(id, result, true).dump(2) + "\n");
     write_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
   }
-  if (!options.quiet) std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);
-  if (!options.quiet && log) fmt::print(options.json ? stderr : stdout, "  log          {}\n", id.log);
+  if (!options.quiet)
+    std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);
+  if (!options.quiet && log)
+    fmt::print(options.json ? stderr : stdout, "  log          {}\n", id.log);
   int report_code = kGood;
   if (log && !options.no_report) {
-    report_code = write_report_files({.log = id.log, .film = options.film},
-                                     options.json || options.quiet ? stderr : stdout);
+    ReportArguments report;
+    report.log = id.log;
+    report.film = options.film;
+    report_code = write_report_files(report, options.json || options.quiet ? stderr : stdout);
   }
   if (options.json) fmt::print("{}\n", lab::summary_json(id, result).dump());
   const bool failed = result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault;
@@ -217,7 +237,8 @@ int run_behavior(const RunOptions& options) {
 
 void add_run_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Runs a behavior on a backend, headless and as fast as it goes");
+  CLI::App* command =
+      app.add_subcommand("run", "Runs a behavior on a backend, headless and as fast as it goes");
   add_run_options(*command, *options);
   command->callback([options, &exit_code] {
     try {

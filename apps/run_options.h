@@ -16,19 +16,19 @@ struct RunOptions {
   std::string robot;
   std::string backend = "mujoco";
   std::string world = "flat";
-  std::string duration_text;      // as written, e.g. `20s`
-  double duration = 20.0;         // s; 0: no bound
-  std::int64_t steps = 0;         // 0: no bound
+  std::string duration_text;  // as written, e.g. `20s`
+  double duration = 20.0;     // s; 0: no bound
+  std::int64_t steps = 0;     // 0: no bound
   std::uint64_t seed = 1;
   std::vector<std::string> set;
   std::vector<std::string> pushes;
   std::string goal, goal_velocity;
-  std::string log = "out/run";    // folder
+  std::string log = "out/run";  // folder
   bool no_log = false;
   bool no_report = false;
-  std::string film;               // MP4, empty: none
+  std::string film;  // MP4, empty: none
   bool log_all = false;
-  int log_every = 6;              // ticks: 250 Hz at 1500 Hz
+  int log_every = 6;  // ticks: 250 Hz at 1500 Hz
   bool json = false;
   bool quiet = false;
   bool realtime = false;

@@ -10,7 +10,8 @@ namespace footfall::apps {
 
 void add_signals_command(CLI::App& app, int& exit_code) {
   auto file = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("signals", "Lists every signal of a behavior with unit and meaning");
+  CLI::App* command =
+      app.add_subcommand("signals", "Lists every signal of a behavior with unit and meaning");
   command->add_option("BEHAVIOR", *file, "Behavior file or name")->required();
   command->footer("Example: footfall signals balance");
   command->callback([file, &exit_code] {

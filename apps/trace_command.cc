@@ -31,10 +31,12 @@ void add_trace_command(CLI::App& app, int& exit_code) {
     std::string file, events, script;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("trace", "Runs the statechart alone: one JSON line an event");
+  CLI::App* command =
+      app.add_subcommand("trace", "Runs the statechart alone: one JSON line an event");
   command->add_option("FILE", options->file, "Behavior file or name")->required();
   auto* events = command->add_option("--events", options->events, "Events, commas between");
-  command->add_option("--script", options->script, "YAML list of {after: TIME} and {event: NAME}")->excludes(events);
+  command->add_option("--script", options->script, "YAML list of {after: TIME} and {event: NAME}")
+      ->excludes(events);
   command->footer("Example: footfall trace behaviors/library/balance.yaml --events start");
   command->callback([options, &exit_code] {
     exit_code = trace_file(options->file, options->events, options->script);

@@ -24,7 +24,7 @@ struct ReferenceSpec {
   Kind kind = Kind::none;
   Shape shape = Shape::hold;
   int owner = 0;
-  int over = -1;          // expression of a time
+  int over = -1;  // expression of a time
   // Part of the trajectory's time during which it follows a changing `to`; 0: never. Following to
   // the very end would ask for accelerations without bound. `retarget: true` is 80 %.
   double retarget = 0.0;

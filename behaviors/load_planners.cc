@@ -93,7 +93,7 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
   }
   core::check_keys(map,
                    {"type", "kappa", "reversal", "goal", "width_offset", "goal_error_limit",
-                    "reach", "extension", "velocity_filter", "doc"},
+                    "reach", "extension", "velocity_filter", "goal_speed", "doc"},
                    context.diagnostics);
   PlannerInfo planner;
   planner.name = entry.key;
@@ -108,6 +108,7 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
   }
   core::read_quantity(map, "width_offset", core::kLength, spec.width_offset, context.diagnostics);
   read_limit(context, map, "goal_error_limit", core::kLength, spec.goal_error_limit);
+  read_limit(context, map, "goal_speed", core::kVelocity, spec.goal_speed);
   read_limit(context, map, "velocity_filter", core::kTime, spec.velocity_filter);
   read_reach(context, map, spec);
   read_extension(context, map, spec);

@@ -15,7 +15,8 @@ double read_retarget(const core::YamlNode& node, core::Diagnostics& diagnostics)
   if (node.scalar == "true" || node.scalar == "false" || !node.is_scalar()) {
     return core::read_bool(node, diagnostics).value_or(false) ? kUsual : 0.0;
   }
-  return core::read_bounded(node, core::kNone, 0.0, 0.95, diagnostics, "true, false or a part of the time")
+  return core::read_bounded(node, core::kNone, 0.0, 0.95, diagnostics,
+                            "true, false or a part of the time")
       .value_or(0.0);
 }
 

@@ -1,5 +1,6 @@
-// The statechart at run time together with the control it asks for: one tick() in the realtime loop,
-// between the model update and the whole-body controller. Allocates nothing after construction.
+// The statechart at run time together with the control it asks for: one tick() in the realtime
+// loop, between the model update and the whole-body controller. Allocates nothing after
+// construction.
 #pragma once
 
 #include <array>
@@ -32,7 +33,7 @@ struct PlanRequest {
   std::uint32_t sequence = 0;  // grows with each request; an exit cancels all older ones
   int stance = -1;             // contact indices
   int swing = -1;
-  double switch_in = 0.0;      // s until the support changes, counted from now
+  double switch_in = 0.0;  // s until the support changes, counted from now
 };
 
 // What came back.

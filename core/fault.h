@@ -9,21 +9,21 @@ namespace footfall::core {
 
 // Run-time faults; their dotted names are used in robot files, logs and as events `fault.NAME`.
 enum class Fault : std::uint8_t {
-  fall,                // torso too low, tilted too far, or a body but a foot touches
-  non_finite,          // a state or torque that is not a number
-  torque_limit,        // a commanded torque beyond the joint's limit (clamped)
-  torque_step,         // a torque step beyond the robot's bound between neighbouring ticks
-  joint_limit,         // a joint beyond its position limits
-  swing_too_long,      // a foot in the air for more than 1 s while stepping
-  simulator_warning,   // MuJoCo's warnings, a reset, a bad value
-  sensor_stale,        // no new sensor data
-  imu_stale,           // no new IMU data
-  mocap_stale,         // no new motion capture data
-  tick_overrun,        // the tick missed its deadline
-  planner_late,        // a plan came after its deadline
-  execution,           // error.execution of the statechart
-  event_overflow,      // an event queue was full
-  rank_loss,           // a task level lost rank that it has at load
+  fall,               // torso too low, tilted too far, or a body but a foot touches
+  non_finite,         // a state or torque that is not a number
+  torque_limit,       // a commanded torque beyond the joint's limit (clamped)
+  torque_step,        // a torque step beyond the robot's bound between neighbouring ticks
+  joint_limit,        // a joint beyond its position limits
+  swing_too_long,     // a foot in the air for more than 1 s while stepping
+  simulator_warning,  // MuJoCo's warnings, a reset, a bad value
+  sensor_stale,       // no new sensor data
+  imu_stale,          // no new IMU data
+  mocap_stale,        // no new motion capture data
+  tick_overrun,       // the tick missed its deadline
+  planner_late,       // a plan came after its deadline
+  execution,          // error.execution of the statechart
+  event_overflow,     // an event queue was full
+  rank_loss,          // a task level lost rank that it has at load
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -34,8 +34,8 @@ enum class Reaction : std::uint8_t { keep_going, safe_state, safe_stop };
 // Dotted name, e.g. "torque.limit".
 constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
-      "fall",         "non_finite",   "torque.limit", "torque.step",  "joint.limit",
-      "swing.long",   "simulator",    "sensor.stale", "imu.stale",    "mocap.stale",
+      "fall",         "non_finite",   "torque.limit", "torque.step",    "joint.limit",
+      "swing.long",   "simulator",    "sensor.stale", "imu.stale",      "mocap.stale",
       "tick.overrun", "planner.late", "execution",    "event.overflow", "rank.loss"};
   return names[static_cast<std::size_t>(fault)];
 }

@@ -5,8 +5,8 @@
 
 namespace footfall::core {
 
-// Before a run starts, a MuJoCo error throws std::runtime_error with MuJoCo's own text. Warnings are
-// counted and never written to MUJOCO_LOG.TXT. Safe to call again.
+// Before a run starts, a MuJoCo error throws std::runtime_error with MuJoCo's own text. Warnings
+// are counted and never written to MUJOCO_LOG.TXT. Safe to call again.
 void install_mujoco_error_handlers();
 
 // While a run is under way an error must not unwind through the tick: it is recorded, `on_error`

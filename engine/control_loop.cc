@@ -23,8 +23,12 @@ std::vector<std::vector<int>> axis_columns(const behaviors::Behavior& behavior) 
     std::vector<std::string> names;
     switch (task.type) {
       case tasks::TaskType::com_position:
-      case tasks::TaskType::point_position: names = {"x", "y", "z"}; break;
-      case tasks::TaskType::body_orientation: names = {"roll", "pitch", "yaw"}; break;
+      case tasks::TaskType::point_position:
+        names = {"x", "y", "z"};
+        break;
+      case tasks::TaskType::body_orientation:
+        names = {"roll", "pitch", "yaw"};
+        break;
       case tasks::TaskType::joint_posture:
       case tasks::TaskType::joint_damping:
         for (const auto& joint : behavior.robot.joints) names.push_back(joint.name);
@@ -53,8 +57,8 @@ tasks::ControllerSizes controller_sizes(const behaviors::Behavior& behavior) {
   sizes.contacts = std::max<int>(1, static_cast<int>(behavior.robot.contacts.size()));
   sizes.task_rows = 0;
   for (const behaviors::TaskInstance& task : behavior.task_instances) {
-    const bool joints = task.type == tasks::TaskType::joint_posture ||
-                        task.type == tasks::TaskType::joint_damping;
+    const bool joints =
+        task.type == tasks::TaskType::joint_posture || task.type == tasks::TaskType::joint_damping;
     sizes.task_rows += joints ? behavior.robot.joint_count() : 3;
   }
   sizes.task_rows = std::clamp(sizes.task_rows, 1, core::kMaxAxes);
@@ -147,7 +151,8 @@ void ControlLoop::handle(const SafetyFindings& findings) noexcept {
 
 void ControlLoop::observe_support() noexcept {
   const tasks::ControlSet& set = machine_->control().primary;
-  planners_.observe({set.contacts.data(), static_cast<std::size_t>(set.contact_count)}, period_);
+  planners_.observe({set.contacts.data(), static_cast<std::size_t>(set.contact_count)},
+                    machine_->parameters(), period_);
 }
 
 void ControlLoop::safe_stop() noexcept {

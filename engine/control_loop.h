@@ -29,12 +29,13 @@ enum class LoopState : std::uint8_t {
   running,
   finished,  // the behavior reached a final state of its root
   fallen,
-  stopped,   // a fault whose reaction is safe_stop
+  stopped,  // a fault whose reaction is safe_stop
 };
 
 class ControlLoop {
  public:
-  // Builds everything for the worst case. Throws std::runtime_error with one clear sentence (model).
+  // Builds everything for the worst case. Throws std::runtime_error with one clear sentence
+  // (model).
   ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& hardware,
               const LoopSettings& settings);
 
@@ -44,9 +45,9 @@ class ControlLoop {
 
   // The tick in two halves, so that a caller can time control apart from the backend:
   // sense() reads the hardware; control() computes and writes. Allocate nothing.
-  bool sense() noexcept;   // false: nothing new was read (counted; control() still runs)
-  void compute() noexcept; // estimate ... safety filter; commands are ready
-  void actuate() noexcept; // hardware write; the backend advances
+  bool sense() noexcept;    // false: nothing new was read (counted; control() still runs)
+  void compute() noexcept;  // estimate ... safety filter; commands are ready
+  void actuate() noexcept;  // hardware write; the backend advances
   LoopState tick() noexcept;
 
   LoopState state() const noexcept { return state_; }

@@ -32,9 +32,11 @@ void PlannerLink::start() noexcept {
 
 // v̂' = (g/h)(x - p) + (v - v̂)/τ: the pendulum predicts, the measured velocity corrects slowly, so
 // noise is averaged over τ without the lag of a plain low-pass.
-void PlannerLink::observe(std::span<const int> stance_contacts, double period) noexcept {
+void PlannerLink::observe(std::span<const int> stance_contacts, std::span<const double> parameters,
+                          double period) noexcept {
   const auto& com = model_.com();
   for (std::size_t i = 0; i < behavior_.planners.size(); ++i) {
+    approach_goal(i, parameters, period);
     const double tau = behavior_.planners[i].spec.velocity_filter;
     auto& v = filtered_velocity_[i];
     if (!primed_ || !(tau > 0.0) || stance_contacts.empty()) {
@@ -49,8 +51,9 @@ void PlannerLink::observe(std::span<const int> stance_contacts, double period) n
     }
     const double height = std::max(0.1, com.position[2] - support[2]);
     for (std::size_t k = 0; k < 2; ++k) {
-      v[k] += period * (behavior_.planners[i].spec.gravity / height * (com.position[k] - support[k]) +
-                        (com.velocity[k] - v[k]) / tau);
+      v[k] +=
+          period * (behavior_.planners[i].spec.gravity / height * (com.position[k] - support[k]) +
+                    (com.velocity[k] - v[k]) / tau);
     }
   }
   primed_ = true;
@@ -66,15 +69,36 @@ void PlannerLink::deliver(std::int64_t tick, behaviors::Machine& machine) noexce
 
 void PlannerLink::take(std::int64_t tick, behaviors::Machine& machine) noexcept {
   for (const PlanRequest& request : machine.plan_requests()) {
-    const PlanAnswer computed = answer(request, machine.parameters());
+    const PlanAnswer computed = answer(request);
     if (count_ == pending_.size()) continue;  // its deadline will report it
     pending_[(head_ + count_) % pending_.size()] = {tick + latency_ticks_, computed};
     ++count_;
   }
 }
 
-PlanAnswer PlannerLink::answer(const PlanRequest& request,
-                               std::span<const double> parameters) const noexcept {
+// A goal that jumps is approached from where the robot stood, at a speed it can follow.
+void PlannerLink::approach_goal(std::size_t planner, std::span<const double> parameters,
+                                double period) noexcept {
+  const PlannerInfo& info = behavior_.planners[planner];
+  std::array<double, 2> wanted{};
+  if (info.goal_slot >= 0) {
+    const auto slot = static_cast<std::size_t>(info.goal_slot);
+    wanted = {parameters[slot], parameters[slot + 1]};
+  } else if (info.goal.size() >= 2) {
+    wanted = {info.goal[0], info.goal[1]};
+  }
+  std::array<double, 2>& goal = goal_[planner];
+  if (!primed_) goal = {model_.com().position[0], model_.com().position[1]};
+  const double distance = std::hypot(wanted[0] - goal[0], wanted[1] - goal[1]);
+  const double step = info.spec.goal_speed * period;
+  if (!(info.spec.goal_speed > 0.0) || distance <= step) {
+    goal = wanted;
+    return;
+  }
+  for (std::size_t k = 0; k < 2; ++k) goal[k] += step / distance * (wanted[k] - goal[k]);
+}
+
+PlanAnswer PlannerLink::answer(const PlanRequest& request) const noexcept {
   const PlannerInfo& planner = behavior_.planners[static_cast<std::size_t>(request.planner)];
   FootPlannerInput in;
   const auto& com = model_.com();
@@ -84,17 +108,12 @@ PlanAnswer PlannerLink::answer(const PlanRequest& request,
   in.com_height = com.position[2] - stance[2];
   in.stance = stance;
   in.yaw = model_.rpy()[2];
-  if (planner.goal_slot >= 0) {
-    const auto slot = static_cast<std::size_t>(planner.goal_slot);
-    in.goal = {parameters[slot], parameters[slot + 1]};
-  } else if (planner.goal.size() >= 2) {
-    in.goal = {planner.goal[0], planner.goal[1]};
-  }
+  in.goal = goal_[static_cast<std::size_t>(request.planner)];
   in.switch_in = request.switch_in;
   in.swing_side = contact_side_[static_cast<std::size_t>(request.swing)];
   const FootPlan plan = plan_foot(planner.spec, in);
-  return {request.planner, request.sequence,    plan.ok,
-          plan.target,     plan.predicted_pos, plan.predicted_vel, plan.extension};
+  return {request.planner,    request.sequence,   plan.ok,       plan.target,
+          plan.predicted_pos, plan.predicted_vel, plan.extension};
 }
 
 }  // namespace footfall::engine

@@ -1,5 +1,5 @@
-// Between the machine's plan requests and the planners, in lock-step: an answer is computed from the
-// state at the asking and arrives a declared simulated latency later.
+// Between the machine's plan requests and the planners, in lock-step: an answer is computed from
+// the state at the asking and arrives a declared simulated latency later.
 #pragma once
 
 #include <array>
@@ -19,8 +19,10 @@ class PlannerLink {
 
   // At the start pose, the model being updated: which side each contact belongs to.
   void start() noexcept;
-  // Updates what planners observe every tick (the CoM velocity filter). period in s.
-  void observe(std::span<const int> stance_contacts, double period) noexcept;
+  // Updates what planners observe every tick (the CoM velocity filter, the goal
+  // that is approached). period in s.
+  void observe(std::span<const int> stance_contacts, std::span<const double> parameters,
+               double period) noexcept;
   // Hands over the answers due at this tick.
   void deliver(std::int64_t tick, behaviors::Machine& machine) noexcept;
   // Answers this tick's requests, to be delivered later. Requests beyond the capacity stay without
@@ -32,8 +34,9 @@ class PlannerLink {
     std::int64_t due = 0;
     behaviors::PlanAnswer answer;
   };
-  behaviors::PlanAnswer answer(const behaviors::PlanRequest& request,
-                               std::span<const double> parameters) const noexcept;
+  void approach_goal(std::size_t planner, std::span<const double> parameters,
+                     double period) noexcept;
+  behaviors::PlanAnswer answer(const behaviors::PlanRequest& request) const noexcept;
 
   const behaviors::Behavior& behavior_;
   const model::ControlModel& model_;
@@ -42,6 +45,7 @@ class PlannerLink {
   std::size_t head_ = 0, count_ = 0;
   std::array<std::array<double, 2>, core::kMaxPlanners> filtered_velocity_{};
   std::array<double, core::kMaxContacts> contact_side_{};  // +1 left, -1 right of the base
+  std::array<std::array<double, 2>, core::kMaxPlanners> goal_{};  // m, world, as approached
   bool primed_ = false;
 };
 

@@ -38,7 +38,8 @@ SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
   const bool low = model.contact_count() > 0 && robot_.standing_height > 0.0 &&
                    state.p_WB[2] - ground < robot_.height_limit * robot_.standing_height;
   const double upright = model.R_WB()[8];  // cos of the tilt
-  if (low || upright < std::cos(robot_.tilt_limit) || sensors.body_contact) findings.add(Fault::fall);
+  if (low || upright < std::cos(robot_.tilt_limit) || sensors.body_contact)
+    findings.add(Fault::fall);
   return findings;
 }
 

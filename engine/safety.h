@@ -28,7 +28,8 @@ class SafetyFilter {
 
   // Before control: fall (height of the base above the lowest contact point below its part of the
   // standing height, tilt beyond the limit, another body touching), joint limits, backend faults.
-  SafetyFindings check_state(const hal::Sensors& sensors, const model::ControlModel& model) noexcept;
+  SafetyFindings check_state(const hal::Sensors& sensors,
+                             const model::ControlModel& model) noexcept;
 
   // After control: replaces what is not finite by 0, clamps to the limits, counts torque steps.
   // `first` suppresses the step check of the first tick.

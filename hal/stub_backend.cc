@@ -9,8 +9,8 @@
 namespace footfall::hal {
 
 StubBackend::StubBackend(StubSettings settings) : settings_(std::move(settings)) {
-  if (settings_.joints < 0 || settings_.joints > core::kMaxJoints ||
-      settings_.contacts < 0 || settings_.contacts > core::kMaxContacts) {
+  if (settings_.joints < 0 || settings_.joints > core::kMaxJoints || settings_.contacts < 0 ||
+      settings_.contacts > core::kMaxContacts) {
     throw std::runtime_error("stub backend: too many joints or contacts");
   }
   if (!(settings_.period > 0.0) || !(settings_.inertia > 0.0)) {

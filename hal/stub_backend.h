@@ -1,6 +1,6 @@
 // A backend without physics: every joint is a double integrator q̈ = τ / inertia, the base stands
-// still, contacts follow a script. It runs the same tick as a simulator or a robot, for tests of the
-// engine and for trying a behavior's timing without a model of the world.
+// still, contacts follow a script. It runs the same tick as a simulator or a robot, for tests of
+// the engine and for trying a behavior's timing without a model of the world.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@ namespace footfall::hal {
 struct StubSettings {
   int joints = 0;
   int contacts = 0;
-  double period = 0.0;                 // s
-  double inertia = 1.0;                // kg m^2, of every joint
-  std::vector<double> start;           // rad, joint positions at start
-  std::array<double, 3> base{};        // m, base origin in the world
+  double period = 0.0;           // s
+  double inertia = 1.0;          // kg m^2, of every joint
+  std::vector<double> start;     // rad, joint positions at start
+  std::array<double, 3> base{};  // m, base origin in the world
   // Which contacts are closed at a time; null: all, always.
   std::function<bool(int contact, double time)> contact_script;
 };

@@ -92,10 +92,14 @@ class Run {
   bool ended() {
     if (spec_.stop && spec_.stop->load()) return end_with(RunEnd::stopped);
     switch (loop_.state()) {
-      case engine::LoopState::running: break;
-      case engine::LoopState::finished: return end_with(RunEnd::finished);
-      case engine::LoopState::fallen: return end_with(RunEnd::fall);
-      case engine::LoopState::stopped: return end_with(RunEnd::fault);
+      case engine::LoopState::running:
+        break;
+      case engine::LoopState::finished:
+        return end_with(RunEnd::finished);
+      case engine::LoopState::fallen:
+        return end_with(RunEnd::fall);
+      case engine::LoopState::stopped:
+        return end_with(RunEnd::fault);
     }
     if (metrics_.counter().swing_too_long()) {
       result_.faults.add(core::Fault::swing_too_long);
@@ -119,7 +123,8 @@ class Run {
     const double wall = seconds_since(started_);
     if (wall - last_status_ < 0.2) return;
     last_status_ = wall;
-    spec_.status({loop_.time(), metrics_.counter().steps(), log_.state_name(), loop_.time() / wall});
+    spec_.status(
+        {loop_.time(), metrics_.counter().steps(), log_.state_name(), loop_.time() / wall});
   }
 
   void finish() {
@@ -149,12 +154,18 @@ class Run {
 
 const char* run_end_name(RunEnd end) {
   switch (end) {
-    case RunEnd::steps: return "steps";
-    case RunEnd::time: return "time";
-    case RunEnd::fall: return "fall";
-    case RunEnd::fault: return "fault";
-    case RunEnd::stopped: return "stopped";
-    case RunEnd::finished: return "finished";
+    case RunEnd::steps:
+      return "steps";
+    case RunEnd::time:
+      return "time";
+    case RunEnd::fall:
+      return "fall";
+    case RunEnd::fault:
+      return "fault";
+    case RunEnd::stopped:
+      return "stopped";
+    case RunEnd::finished:
+      return "finished";
   }
   return "time";
 }

@@ -29,20 +29,20 @@ struct ScheduledEvent {
 struct RunStatus {
   double time = 0.0;
   std::int64_t steps = 0;
-  std::string state;      // path of the first active atomic state
+  std::string state;  // path of the first active atomic state
   double real_time_factor = 0.0;
 };
 
 struct RunSpec {
-  std::int64_t max_steps = 0;  // 0: no bound
-  double max_time = 20.0;      // s; 0: no bound
+  std::int64_t max_steps = 0;                          // 0: no bound
+  double max_time = 20.0;                              // s; 0: no bound
   std::optional<std::array<double, 2>> goal;           // m, world
   std::optional<std::array<double, 2>> goal_velocity;  // m/s, world; the goal moves from the start
   std::vector<ScheduledEvent> events;
-  bool realtime = false;       // paced by the wall clock
-  int log_every = 6;           // ticks; 1: all
+  bool realtime = false;  // paced by the wall clock
+  int log_every = 6;      // ticks; 1: all
   engine::LogWriter* log = nullptr;
-  const std::atomic<bool>* stop = nullptr;  // set by Ctrl-C
+  const std::atomic<bool>* stop = nullptr;       // set by Ctrl-C
   std::function<void(const RunStatus&)> status;  // about five times a second of wall time
   // Counts heap allocations of this thread while armed; null: not counted.
   void (*arm_allocations)(bool) = nullptr;

@@ -25,7 +25,10 @@ std::string names_of(const behaviors::Chart& chart, const behaviors::Range& targ
 }  // namespace
 
 RunLog::RunLog(const engine::ControlLoop& loop, engine::LogWriter* log, int every)
-    : loop_(loop), log_(log), every_(std::max(1, every)), last_targets_(loop.behavior().planners.size()) {}
+    : loop_(loop),
+      log_(log),
+      every_(std::max(1, every)),
+      last_targets_(loop.behavior().planners.size()) {}
 
 std::int64_t RunLog::time_ns() const {
   return loop_.ticks() * 1'000'000'000'000LL / loop_.behavior().robot.rate_mhz;
@@ -58,7 +61,8 @@ void RunLog::after_tick(const StepEvent& step) {
     // Replanning moves a target a little each time; a row for each millimetre tells the story.
     if (std::hypot(now[0] - last_targets_[i][0], now[1] - last_targets_[i][1]) < 1e-3) continue;
     last_targets_[i] = now;
-    event("plan", behavior.planners[i].name, fmt::format("{:.4f} {:.4f} {:.4f}", now[0], now[1], now[2]));
+    event("plan", behavior.planners[i].name,
+          fmt::format("{:.4f} {:.4f} {:.4f}", now[0], now[1], now[2]));
   }
   for (int f = 0; f < core::kFaultCount; ++f) {
     const auto fault = static_cast<core::Fault>(f);

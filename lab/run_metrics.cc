@@ -7,7 +7,7 @@
 namespace footfall::lab {
 namespace {
 
-constexpr std::size_t kRecent = 51;      // 50 whole steps
+constexpr std::size_t kRecent = 51;  // 50 whole steps
 constexpr std::size_t kGoalSteps = 10;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -56,7 +56,8 @@ void RunMetrics::observe_errors() noexcept {
     const tasks::TaskCommand& task = set.tasks[at(t)];
     for (int i = 0; i < task.axis_count; ++i) {
       const tasks::AxisCommand& axis = set.axes[at(task.first_axis + i)];
-      if (task.type == tasks::TaskType::body_orientation) orientation_ref_[at(axis.axis)] = axis.ref;
+      if (task.type == tasks::TaskType::body_orientation)
+        orientation_ref_[at(axis.axis)] = axis.ref;
       if (task.type == tasks::TaskType::com_position && axis.axis == 2) {
         height_ref_ = axis.ref;
         have_height_ref_ = true;
@@ -122,7 +123,8 @@ RunFigures RunMetrics::figures(bool fell) const {
     return recent_[(recent_head_ + kRecent - 1 - back) % kRecent];
   };
   const std::size_t last = std::min(count, kGoalSteps);
-  for (std::size_t i = 0; i < last; ++i) f.goal_error += sample(i).goal_distance / static_cast<double>(last);
+  for (std::size_t i = 0; i < last; ++i)
+    f.goal_error += sample(i).goal_distance / static_cast<double>(last);
   if (count > 1) {
     const StepSample newest = sample(0);
     const StepSample oldest = sample(count - 1);

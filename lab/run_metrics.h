@@ -33,12 +33,12 @@ struct RunFigures {
   std::int64_t placements = 0;
   double max_torque_step = 0.0;
   double peak_torque = 0.0;
-  double goal_error = 0.0;        // mean over the last 10 steps
-  double path_length = 0.0;       // of the CoM, horizontal
-  double max_distance = 0.0;      // CoM to goal, largest
+  double goal_error = 0.0;                        // mean over the last 10 steps
+  double path_length = 0.0;                       // of the CoM, horizontal
+  double max_distance = 0.0;                      // CoM to goal, largest
   std::array<double, 2> mean_velocity_last_50{};  // m/s, world
-  double worst_clearance = 0.0;   // m, smallest rise of a swing foot
-  double mean_step_time = 0.0;    // s
+  double worst_clearance = 0.0;                   // m, smallest rise of a swing foot
+  double mean_step_time = 0.0;                    // s
   struct Internal {
     ErrorFigure error;
     double reference = 0.0;

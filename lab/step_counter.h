@@ -29,7 +29,9 @@ class StepCounter {
   std::int64_t steps() const noexcept { return steps_; }
   bool swing_too_long() const noexcept { return swing_too_long_; }
   // True in the tick in which this foot came down after a counted flight.
-  bool touched_down(int foot) const noexcept { return feet_state_[static_cast<std::size_t>(foot)].landed; }
+  bool touched_down(int foot) const noexcept {
+    return feet_state_[static_cast<std::size_t>(foot)].landed;
+  }
   double worst_clearance() const noexcept { return worst_clearance_; }  // m, over counted steps
 
  private:

@@ -59,9 +59,8 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
                   {"pitch", error_json(f.pitch)},
                   {"yaw", error_json(f.yaw)},
                   {"height", error_json(f.height)}};
-  out["foot_placement_m"] = f.placements > 0
-                                ? Json{{"mean", f.placement_mean}, {"max", f.placement_max}}
-                                : Json();
+  out["foot_placement_m"] =
+      f.placements > 0 ? Json{{"mean", f.placement_mean}, {"max", f.placement_max}} : Json();
   const bool settled = f.roll.count > 0;  // the run was long enough for these to count
   out["max_torque_step_Nm"] = settled ? Json(f.max_torque_step) : Json();
   out["peak_torque_Nm"] = settled ? Json(f.peak_torque) : Json();
@@ -102,26 +101,28 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   const auto deg = [](double rad) { return rad * 180.0 / M_PI; };
   std::string text = fmt::format("{} · {} · {} · {} · seed {}\n", id.behavior, id.robot, id.world,
                                  id.backend, id.seed);
-  text += fmt::format("  end          {} after {:.2f} s, {} steps{}\n", run_end_name(result.end), f.time,
-                      f.steps, f.fell ? "  (the robot FELL)" : "");
+  text += fmt::format("  end          {} after {:.2f} s, {} steps{}\n", run_end_name(result.end),
+                      f.time, f.steps, f.fell ? "  (the robot FELL)" : "");
   if (f.height.count > 0) {
     text += fmt::format("  orientation  roll {:.2f}°  pitch {:.2f}°  yaw {:.2f}° (largest error)\n",
                         deg(f.roll.max), deg(f.pitch.max), deg(f.yaw.max));
-    text += fmt::format("  CoM height   {:.2f} mm rms, {:.2f} mm largest error\n", f.height.rms() * 1e3,
-                        f.height.max * 1e3);
+    text += fmt::format("  CoM height   {:.2f} mm rms, {:.2f} mm largest error\n",
+                        f.height.rms() * 1e3, f.height.max * 1e3);
   }
   if (f.steps > 1) {
-    text += fmt::format("  steps        {:.3f} s each, clearance {:.1f} cm at least, goal error {:.3f} m\n",
-                        f.mean_step_time, f.worst_clearance * 100.0, f.goal_error);
+    text += fmt::format(
+        "  steps        {:.3f} s each, clearance {:.1f} cm at least, goal error {:.3f} m\n",
+        f.mean_step_time, f.worst_clearance * 100.0, f.goal_error);
   }
   if (f.placements > 0) {
     text += fmt::format("  footsteps    {:.1f} mm mean, {:.1f} mm largest from the plan\n",
                         f.placement_mean * 1e3, f.placement_max * 1e3);
   }
-  text += fmt::format("  torque       peak {:.1f} Nm, largest step between ticks {:.2f} Nm\n", f.peak_torque,
-                      f.max_torque_step);
+  text += fmt::format("  torque       peak {:.1f} Nm, largest step between ticks {:.2f} Nm\n",
+                      f.peak_torque, f.max_torque_step);
   for (const auto& [name, force] : f.internal) {
-    text += fmt::format("  {}  {:.1f} N rms from {:.1f} N\n", name, force.error.rms(), force.reference);
+    text +=
+        fmt::format("  {}  {:.1f} N rms from {:.1f} N\n", name, force.error.rms(), force.reference);
   }
   std::string faults;
   for (int i = 0; i < core::kFaultCount; ++i) {
@@ -132,8 +133,8 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   }
   text += fmt::format("  faults      {}\n", faults.empty() ? " none" : faults);
   text += fmt::format("  tick         {:.1f} us median, {:.1f} us p99.9; {:.0f} x real time\n",
-                      result.tick_time.percentile(0.5) * 1e-3, result.tick_time.percentile(0.999) * 1e-3,
-                      result.real_time_factor);
+                      result.tick_time.percentile(0.5) * 1e-3,
+                      result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
   return text;
 }

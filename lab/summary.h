@@ -1,5 +1,5 @@
-// A run's summary: one JSON object for scripts, a short text for people, and the file of what only a
-// wall clock knows.
+// A run's summary: one JSON object for scripts, a short text for people, and the file of what only
+// a wall clock knows.
 #pragma once
 
 #include <cstdint>

@@ -19,16 +19,16 @@ namespace footfall::model {
 
 // What the controller believes differently from the robot's file.
 struct ModelDeviation {
-  double mass_scale = 1.0;                                // every mass and inertia
+  double mass_scale = 1.0;                                 // every mass and inertia
   std::map<std::string, std::array<double, 3>> com_shift;  // m, link frame
 };
 
 // A 3-row task Jacobian and what goes with it; pointers stay valid for the model's life.
 struct Kinematics3 {
-  std::array<double, 3> position{};       // m, world (for angular: unused)
-  std::array<double, 3> velocity{};       // J q̇
-  std::array<double, 3> bias{};           // J̇ q̇
-  std::vector<double> jacobian;           // 3 x nv, row-major
+  std::array<double, 3> position{};  // m, world (for angular: unused)
+  std::array<double, 3> velocity{};  // J q̇
+  std::array<double, 3> bias{};      // J̇ q̇
+  std::vector<double> jacobian;      // 3 x nv, row-major
 };
 
 class ControlModel {
@@ -39,12 +39,12 @@ class ControlModel {
   ControlModel(const ControlModel&) = delete;
   ControlModel& operator=(const ControlModel&) = delete;
 
-  int nv() const noexcept { return nv_; }                  // 6 + joints
+  int nv() const noexcept { return nv_; }  // 6 + joints
   int joint_count() const noexcept { return nv_ - 6; }
   int point_count() const noexcept { return static_cast<int>(points_.size()); }
   int contact_count() const noexcept { return contact_count_; }
-  double mass() const noexcept { return mass_; }           // kg
-  double gravity() const noexcept { return gravity_; }     // m/s^2, downwards
+  double mass() const noexcept { return mass_; }        // kg
+  double gravity() const noexcept { return gravity_; }  // m/s^2, downwards
 
   // Everything below is of the state given last. No allocation. `normal_up`: contact points lie at
   // centre - radius * world z.

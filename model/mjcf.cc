@@ -56,9 +56,9 @@ mjModel_* load_robot_model(const std::string& model_path) {
     if (!m) refuse(model_path, error.data());
     return m;
   }
-  return compile_mjcf("<mujoco><compiler discardvisual=\"true\"/><include file=\"" + model_path +
-                          "\"/></mujoco>",
-                      model_path);
+  return compile_mjcf(
+      "<mujoco><compiler discardvisual=\"true\"/><include file=\"" + model_path + "\"/></mujoco>",
+      model_path);
 }
 
 }  // namespace footfall::model

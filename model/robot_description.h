@@ -17,12 +17,12 @@ namespace footfall::model {
 // One actuated joint, in the order of commands and logs.
 struct JointDescription {
   std::string name;
-  double position_min = 0.0;   // rad
-  double position_max = 0.0;   // rad
-  double torque_limit = 0.0;   // N m, symmetric
-  double posture = 0.0;        // rad, nominal
-  double spring = 0.0;         // N m/rad, 0: no series elasticity given
-  double rotor = 0.0;          // kg m^2, reflected
+  double position_min = 0.0;  // rad
+  double position_max = 0.0;  // rad
+  double torque_limit = 0.0;  // N m, symmetric
+  double posture = 0.0;       // rad, nominal
+  double spring = 0.0;        // N m/rad, 0: no series elasticity given
+  double rotor = 0.0;         // kg m^2, reflected
 };
 
 enum class ContactType { point, surface, fixed };
@@ -30,10 +30,10 @@ enum class ContactType { point, surface, fixed };
 // A place that can touch the world.
 struct ContactDescription {
   std::string name;
-  std::string site;       // MJCF site at the centre of the foot's ball
+  std::string site;  // MJCF site at the centre of the foot's ball
   ContactType type = ContactType::point;
-  std::string group;      // joint group of its leg, may be empty
-  double radius = 0.0;    // m; the contact point is centre - radius * ground normal
+  std::string group;    // joint group of its leg, may be empty
+  double radius = 0.0;  // m; the contact point is centre - radius * ground normal
 };
 
 struct PointDescription {
@@ -65,9 +65,9 @@ struct RobotDescription {
   std::vector<PointDescription> points;
   SensorDescription sensors;
   std::vector<std::array<std::string, 2>> symmetry;  // names that change places in a mirror image
-  double tilt_limit = 0.8;           // rad
-  double height_limit = 0.6;         // part of standing_height below which it has fallen
-  double torque_step_limit = 0.0;    // N m between neighbouring ticks; 0: none
+  double tilt_limit = 0.8;                           // rad
+  double height_limit = 0.6;       // part of standing_height below which it has fallen
+  double torque_step_limit = 0.0;  // N m between neighbouring ticks; 0: none
   // By fault. What the file does not name: fall and simulator_warning safe_state, non_finite
   // safe_stop, the rest keep_going.
   std::array<core::Reaction, core::kFaultCount> reactions{};

@@ -44,15 +44,18 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
   mj_forward(model_, data_);
   for (const model::JointDescription& j : robot.joints) {
     const int id = mj_name2id(model_, mjOBJ_JOINT, j.name.c_str());
-    if (id < 0) throw std::runtime_error(robot.path + ": error: no joint '" + j.name + "' in the model");
+    if (id < 0)
+      throw std::runtime_error(robot.path + ": error: no joint '" + j.name + "' in the model");
     qpos_.push_back(model_->jnt_qposadr[id]);
     dof_.push_back(model_->jnt_dofadr[id]);
     int actuator = -1;
     for (int a = 0; a < model_->nu; ++a) {
-      if (model_->actuator_trntype[a] == mjTRN_JOINT && model_->actuator_trnid[2 * a] == id) actuator = a;
+      if (model_->actuator_trntype[a] == mjTRN_JOINT && model_->actuator_trnid[2 * a] == id)
+        actuator = a;
     }
     if (actuator < 0) {
-      throw std::runtime_error(robot.path + ": error: joint '" + j.name + "' has no motor in the model");
+      throw std::runtime_error(robot.path + ": error: joint '" + j.name +
+                               "' has no motor in the model");
     }
     actuator_.push_back(actuator);
     torque_limit_.push_back(j.torque_limit);
@@ -170,7 +173,8 @@ void MujocoBackend::write(const hal::Commands& commands) noexcept {
     }
     delay_head_ = (delay_head_ + 1) % delay_line_.size();
     const std::vector<double>& now = delay_line_[delay_head_];  // the oldest: written `delay` ago
-    for (std::size_t j = 0; j < now.size(); ++j) data_->ctrl[actuator_[j]] = stopped_ ? 0.0 : now[j];
+    for (std::size_t j = 0; j < now.size(); ++j)
+      data_->ctrl[actuator_[j]] = stopped_ ? 0.0 : now[j];
     apply_pushes();
     mj_step(model_, data_);
   }
@@ -191,12 +195,12 @@ void MujocoBackend::apply_pushes() noexcept {
 }
 
 bool MujocoBackend::push(int body, double force, double direction, double duration) noexcept {
-  const auto free_slot = std::find_if(pushes_.begin(), pushes_.end(),
-                                      [](const ActivePush& p) { return p.body == 0; });
+  const auto free_slot =
+      std::find_if(pushes_.begin(), pushes_.end(), [](const ActivePush& p) { return p.body == 0; });
   if (free_slot == pushes_.end()) return false;
   const double* q = data_->qpos + 3;
-  const double yaw = std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]),
-                                1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
+  const double yaw =
+      std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
   free_slot->body = body;
   free_slot->force = {force * std::cos(yaw + direction), force * std::sin(yaw + direction), 0.0};
   free_slot->steps_left = static_cast<int>(std::llround(duration / model_->opt.timestep));
@@ -220,7 +224,8 @@ PhysicsFacts MujocoBackend::facts() const {
     f.condim_max = std::max(f.condim_max, model_->geom_condim[g]);
   }
   for (int g = 0; g < model_->ngeom; ++g) {
-    if (contact_of_geom_[at(g)] == kGround) f.condim_max = std::max(f.condim_max, model_->geom_condim[g]);
+    if (contact_of_geom_[at(g)] == kGround)
+      f.condim_max = std::max(f.condim_max, model_->geom_condim[g]);
   }
   for (int i = 0; i < model_->nv; ++i) {
     f.damping_max = std::max(f.damping_max, model_->dof_damping[i]);

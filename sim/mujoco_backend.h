@@ -27,15 +27,15 @@ inline constexpr std::size_t kMaxPushes = 32;  // at once
 
 // The facts of the compiled physics that every figure rests on; printed with a run's summary.
 struct PhysicsFacts {
-  double timestep = 0.0;          // s
-  double friction = 0.0;          // of the ground
-  double foot_radius_max = 0.0;   // m
-  int condim_max = 0;             // of any foot contact
-  double damping_max = 0.0;       // of any joint
+  double timestep = 0.0;         // s
+  double friction = 0.0;         // of the ground
+  double foot_radius_max = 0.0;  // m
+  int condim_max = 0;            // of any foot contact
+  double damping_max = 0.0;      // of any joint
   double armature_max = 0.0;
-  int equalities = 0;             // welds and other constraints
+  int equalities = 0;  // welds and other constraints
   int mocap_bodies = 0;
-  double mass = 0.0;              // kg
+  double mass = 0.0;  // kg
 };
 
 class MujocoBackend final : public hal::Hardware {

@@ -8,18 +8,24 @@ namespace {
 
 const char* integrator_name(Integrator i) {
   switch (i) {
-    case Integrator::euler: return "Euler";
-    case Integrator::rk4: return "RK4";
-    case Integrator::implicit: return "implicit";
+    case Integrator::euler:
+      return "Euler";
+    case Integrator::rk4:
+      return "RK4";
+    case Integrator::implicit:
+      return "implicit";
   }
   return "Euler";
 }
 
 const char* solver_name(Solver s) {
   switch (s) {
-    case Solver::newton: return "Newton";
-    case Solver::cg: return "CG";
-    case Solver::pgs: return "PGS";
+    case Solver::newton:
+      return "Newton";
+    case Solver::cg:
+      return "CG";
+    case Solver::pgs:
+      return "PGS";
   }
   return "Newton";
 }

@@ -63,8 +63,8 @@ struct PhysicsSettings {
   Solver solver = Solver::newton;
   Cone cone = Cone::elliptic;
   double impratio = 10.0;
-  int iterations = 100;                             // of the solver, at most
-  double tolerance = 1e-8;                          // of the solver
+  int iterations = 100;     // of the solver, at most
+  double tolerance = 1e-8;  // of the solver
   // Contact time constant (s) and damping ratio. 1 ms is three physics steps: a softer ground lags
   // behind changing forces so much that task accelerations miss their command by 0.03 rad/s^2.
   std::array<double, 2> solref{0.001, 1.0};
@@ -93,7 +93,8 @@ struct WorldDescription {
                                         // `mass: "+5 %"` is mass_scale 1.05
   std::vector<ConstraintName> constraints;
   double planner_latency = 2e-3;  // s, in lock-step
-  double start_velocity = 0.0;    // m/s, standard deviation of the base's horizontal velocity at start
+  double start_velocity =
+      0.0;  // m/s, standard deviation of the base's horizontal velocity at start
   PhysicsSettings physics;
 };
 

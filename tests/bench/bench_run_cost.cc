@@ -20,7 +20,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double kSimulated = 10.0;  // s
 constexpr int kRounds = 7;
 
-double seconds(Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); }
+double seconds(Clock::time_point from) {
+  return std::chrono::duration<double>(Clock::now() - from).count();
+}
 
 // The torques of a run, so that the bare loop steps through the same physics.
 std::vector<std::array<double, 6>> record(const char* name) {
@@ -64,7 +66,8 @@ double whole_run(const char* name, const std::string& log_path) {
 
 int run(const char* name) {
   const auto torques = record(name);
-  const std::string log = (std::filesystem::temp_directory_path() / "footfall_bench_run_cost.mcap").string();
+  const std::string log =
+      (std::filesystem::temp_directory_path() / "footfall_bench_run_cost.mcap").string();
   double bare = 1e9, whole = 1e9;
   for (int round = 0; round < kRounds; ++round) {
     bare = std::min(bare, bare_loop(name, torques));

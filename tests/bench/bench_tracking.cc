@@ -50,10 +50,12 @@ int run(const char* behavior_name) {
   int previous = -1;
   double entered = 0.0;
   loop.start();
-  while (steps.steps() < kSteps && loop.state() == engine::LoopState::running && loop.time() < 60.0) {
+  while (steps.steps() < kSteps && loop.state() == engine::LoopState::running &&
+         loop.time() < 60.0) {
     loop.sense();
     loop.compute();
-    std::array<double, 2> heights = {loop.model().point(0).position[2], loop.model().point(1).position[2]};
+    std::array<double, 2> heights = {loop.model().point(0).position[2],
+                                     loop.model().point(1).position[2]};
     steps.observe(loop.sensors().contact.data(), heights.data());
     const int active = loop.machine().active_atomic().front();
     if (active != previous) entered = loop.time();
@@ -61,17 +63,22 @@ int run(const char* behavior_name) {
     const bool lifting = loop.behavior().states[static_cast<std::size_t>(active)].name == "lift";
     if (lifting && loop.time() - entered >= kSkip && !loop.controller().result().limited) {
       mj_copyData(scratch, rig.backend->model(), rig.backend->data());
-      for (int j = 0; j < 6; ++j) scratch->ctrl[j] = loop.commands().tau[static_cast<std::size_t>(j)];
+      for (int j = 0; j < 6; ++j)
+        scratch->ctrl[j] = loop.commands().tau[static_cast<std::size_t>(j)];
       mj_forward(rig.backend->model(), scratch);
       const tasks::ControlSet& set = loop.machine().control().primary;
       for (int t = 0; t < set.task_count; ++t) {
         const tasks::TaskCommand& task = set.tasks[static_cast<std::size_t>(t)];
-        if (task.type == tasks::TaskType::joint_damping || task.type == tasks::TaskType::joint_posture) continue;
+        if (task.type == tasks::TaskType::joint_damping ||
+            task.type == tasks::TaskType::joint_posture)
+          continue;
         for (int i = 0; i < task.axis_count; ++i) {
           const auto row = static_cast<std::size_t>(task.first_axis + i);
-          const double error = std::abs(loop.controller().result().axes[row].commanded -
-                                        achieved(loop.model(), task, set.axes[row].axis, scratch->qacc));
-          double& of_task = worst[loop.behavior().task_instances[static_cast<std::size_t>(task.instance)].name];
+          const double error =
+              std::abs(loop.controller().result().axes[row].commanded -
+                       achieved(loop.model(), task, set.axes[row].axis, scratch->qacc));
+          double& of_task =
+              worst[loop.behavior().task_instances[static_cast<std::size_t>(task.instance)].name];
           of_task = std::max(of_task, error);
           max_error = std::max(max_error, error);
         }

@@ -1,5 +1,5 @@
-// Torque continuity of contact transitions. At each start and end both control laws are evaluated on
-// the same measured state, references and integrals:
+// Torque continuity of contact transitions. At each start and end both control laws are evaluated
+// on the same measured state, references and integrals:
 //   declared    the law in force before against the one in force after, as the behavior declares it
 //   undeclared  the two plain laws (two feet against one) that would follow each other without it
 // and the largest torque step between neighbouring ticks within 30 ms of a change, the tick of an
@@ -15,8 +15,8 @@ namespace footfall {
 namespace {
 
 constexpr int kSteps = 50;
-constexpr double kNear = 0.030;    // s around a change of the control law
-constexpr double kSettled = 2.0;   // s
+constexpr double kNear = 0.030;   // s around a change of the control law
+constexpr double kSettled = 2.0;  // s
 
 double largest_difference(const double* a, const double* b, int n) {
   double largest = 0.0;
@@ -58,15 +58,18 @@ int run(const char* behavior_name) {
   const int n = loop.model().joint_count();
   lab::StepCounter steps(2, loop.period());
   tasks::ActiveControl previous;
-  double declared = 0.0, undeclared_min = 1e9, undeclared_max = 0.0, near_step = 0.0, impact_step = 0.0;
+  double declared = 0.0, undeclared_min = 1e9, undeclared_max = 0.0, near_step = 0.0,
+         impact_step = 0.0;
   std::int64_t ends = 0;
   double last_change = -1.0, last_impact = -1.0;
   std::array<bool, 2> contact{true, true};
   loop.start();
-  while (steps.steps() < kSteps && loop.state() == engine::LoopState::running && loop.time() < 60.0) {
+  while (steps.steps() < kSteps && loop.state() == engine::LoopState::running &&
+         loop.time() < 60.0) {
     loop.sense();
     loop.compute();
-    const std::array<double, 2> heights = {loop.model().point(0).position[2], loop.model().point(1).position[2]};
+    const std::array<double, 2> heights = {loop.model().point(0).position[2],
+                                           loop.model().point(1).position[2]};
     steps.observe(loop.sensors().contact.data(), heights.data());
     for (std::size_t c = 0; c < 2; ++c) {
       if (loop.sensors().contact[c] && !contact[c]) last_impact = loop.time();
@@ -89,7 +92,8 @@ int run(const char* behavior_name) {
       tasks::WholeBodyController twin = law;  // same integrals
       const tasks::ActiveControl old = carried_to_end(previous, now);
       twin.compute(old, loop.ticks(), loop.sensors().tau.data());
-      const double* after = now.has_other && now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
+      const double* after =
+          now.has_other && now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
       declared = std::max(declared, largest_difference(twin.result().tau.data(), after, n));
       const double jump = largest_difference(twin.tau_primary(), twin.tau_other(), n);
       undeclared_min = std::min(undeclared_min, jump);

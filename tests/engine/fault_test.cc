@@ -123,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
                                s.q[leg + 2] = 2.8;
                              }
                            }},
-                    Fallen{"tilt", [](hal::Sensors& s) {
+                    Fallen{"tilt",
+                           [](hal::Sensors& s) {
                              s.q_WB = {std::cos(0.45), std::sin(0.45), 0, 0};  // 0.9 rad
                            }},
                     Fallen{"body", [](hal::Sensors& s) { s.body_contact = true; }}),

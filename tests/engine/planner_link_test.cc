@@ -44,7 +44,7 @@ struct Link {
     planners.deliver(now, machine);
     machine.tick(now, measure);
     const std::array<int, 1> stance = {0};
-    planners.observe(stance, behavior->robot.period_s());
+    planners.observe(stance, machine.parameters(), behavior->robot.period_s());
     planners.take(now, machine);
     ++now;
   }

@@ -229,11 +229,29 @@ TEST(Summary, HasEveryKeyThatScriptsRelyOn) {
   lab::RunSpec spec;
   spec.max_time = 3.0;
   const lab::RunResult result = lab::run(*rig.loop, spec);
-  const auto json = lab::summary_json({"balance", "hume", "flat", "mujoco", 7, "out/log.mcap", ""}, result);
-  for (const char* key :
-       {"behavior", "robot", "world", "backend", "seed", "end", "steps", "time_s", "fell", "error",
-        "foot_placement_m", "max_torque_step_Nm", "peak_torque_Nm", "goal_error_m", "path_length_m",
-        "internal_force", "faults", "tick_us", "allocations", "real_time_factor", "log"}) {
+  const auto json =
+      lab::summary_json({"balance", "hume", "flat", "mujoco", 7, "out/log.mcap", ""}, result);
+  for (const char* key : {"behavior",
+                          "robot",
+                          "world",
+                          "backend",
+                          "seed",
+                          "end",
+                          "steps",
+                          "time_s",
+                          "fell",
+                          "error",
+                          "foot_placement_m",
+                          "max_torque_step_Nm",
+                          "peak_torque_Nm",
+                          "goal_error_m",
+                          "path_length_m",
+                          "internal_force",
+                          "faults",
+                          "tick_us",
+                          "allocations",
+                          "real_time_factor",
+                          "log"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const char* angle : {"roll", "pitch", "yaw", "height"}) {
@@ -258,7 +276,8 @@ TEST(Summary, WhatDoesNotApplyIsNull) {
   for (const char* angle : {"roll", "pitch", "yaw", "height"}) {
     EXPECT_TRUE(json["error"][angle].is_null()) << angle;
   }
-  for (const char* key : {"foot_placement_m", "goal_error_m", "log", "max_torque_step_Nm", "peak_torque_Nm"}) {
+  for (const char* key :
+       {"foot_placement_m", "goal_error_m", "log", "max_torque_step_Nm", "peak_torque_Nm"}) {
     EXPECT_TRUE(json[key].is_null()) << key;
   }
   EXPECT_EQ(json["steps"], 0);

@@ -139,7 +139,8 @@ TEST_F(Mujoco, APushedFootSlidesAtTheFrictionOfTheWorld) {
       hal::Sensors s;
       backend.read(s);
       const double normal = s.force[0][2];
-      if (normal > 1.0) largest = std::max(largest, std::hypot(s.force[0][0], s.force[0][1]) / normal);
+      if (normal > 1.0)
+        largest = std::max(largest, std::hypot(s.force[0][0], s.force[0][1]) / normal);
     }
     // The elliptic cone is exact up to the solver's tolerance.
     EXPECT_NEAR(largest, friction, 1e-3 * friction);
@@ -372,7 +373,8 @@ TEST_F(Mujoco, ARobotFileThatDoesNotFitItsModelIsRefused) {
   EXPECT_NE(message().find("error: no joint 'no_such_knee' in the model"), std::string::npos);
   robot = whole;
   robot.contacts[0].site = "imu";
-  EXPECT_NE(message().find("error: contact 'right_foot' has no collision sphere"), std::string::npos);
+  EXPECT_NE(message().find("error: contact 'right_foot' has no collision sphere"),
+            std::string::npos);
   robot = whole;
   robot.model_path = "/no/such/model.xml";
   EXPECT_NE(message().find("error: "), std::string::npos);

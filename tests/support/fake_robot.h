@@ -80,8 +80,7 @@ struct StubRig {
 
   std::string state() const {
     const auto active = loop->machine().active_atomic();
-    return active.empty() ? ""
-                          : behavior->states[static_cast<std::size_t>(active.front())].path;
+    return active.empty() ? "" : behavior->states[static_cast<std::size_t>(active.front())].path;
   }
   std::int64_t faults(core::Fault fault) const { return loop->faults().of(fault); }
 };

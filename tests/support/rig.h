@@ -23,13 +23,15 @@ struct Rig {
 
   // behavior: a name in behaviors/library or a path. Throws std::runtime_error with all messages.
   explicit Rig(const std::string& name, std::uint64_t seed = 1,
-               const sim::WorldDescription& in = sim::WorldDescription()) : world(in) {
+               const sim::WorldDescription& in = sim::WorldDescription())
+      : world(in) {
     core::Diagnostics diagnostics;
     behaviors::LoadOptions options;
     options.search = {FOOTFALL_SOURCE_DIR};
-    const std::string path = name.find('/') == std::string::npos
-                                 ? std::string(FOOTFALL_SOURCE_DIR) + "/behaviors/library/" + name + ".yaml"
-                                 : name;
+    const std::string path =
+        name.find('/') == std::string::npos
+            ? std::string(FOOTFALL_SOURCE_DIR) + "/behaviors/library/" + name + ".yaml"
+            : name;
     behavior = behaviors::load_behavior(path, options, diagnostics);
     if (!behavior) throw std::runtime_error(diagnostics.to_string());
     backend = std::make_unique<sim::MujocoBackend>(behavior->robot, world, seed);
