@@ -23,7 +23,8 @@ std::vector<std::string> search_path() {
   // An installed program finds its data beside itself, wherever it was moved to.
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back((program.parent_path() / "../share/footfall").lexically_normal().string());
+  if (!error)
+    folders.push_back((program.parent_path() / "../share/footfall").lexically_normal().string());
   folders.emplace_back(FOOTFALL_SOURCE_DIR);
   folders.emplace_back(FOOTFALL_DATA_DIR);
   return folders;

@@ -44,7 +44,7 @@ class PlannerLink {
   std::array<Pending, 64> pending_{};
   std::size_t head_ = 0, count_ = 0;
   std::array<std::array<double, 2>, core::kMaxPlanners> filtered_velocity_{};
-  std::array<double, core::kMaxContacts> contact_side_{};  // +1 left, -1 right of the base
+  std::array<double, core::kMaxContacts> contact_side_{};         // +1 left, -1 right of the base
   std::array<std::array<double, 2>, core::kMaxPlanners> goal_{};  // m, world, as approached
   bool primed_ = false;
 };
