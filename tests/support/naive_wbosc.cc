@@ -1,4 +1,5 @@
 // See naive_wbosc.h. Equation numbers are [Kim16]'s.
+// Equations: [Kim16] eqs. (28)-(44), as printed but for the corrections of docs/notation.md.
 #include "tests/support/naive_wbosc.h"
 
 #include <Eigen/LU>

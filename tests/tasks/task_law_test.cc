@@ -1,4 +1,5 @@
 // The tasks' control laws: closed loops that obey their gains, axes, integrals and limits.
+// Equations: [Kim16] eq. (37).
 #include "tasks/task_law.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Assembly of control laws, contact transitions in both forms, and reports.
+// Equations: [Kim16] eqs. (1), (2) with E8; eqs. (7)-(10) with E10.
 #include "tasks/whole_body_controller.h"
 
 #include <gtest/gtest.h>
