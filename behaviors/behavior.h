@@ -32,6 +32,7 @@ struct PlannerInfo {
   int goal_slot = -1;        // parameter slot of the goal's x (y follows); -1: constant
   std::vector<double> goal;  // constant goal
   int done_event = -1, late_event = -1, failed_event = -1;
+  core::Mark mark;  // of `kappa`, else of the planner's name
 };
 
 // The statechart's arrays (Chart) and, with a robot, what it controls.

@@ -16,6 +16,8 @@ struct AxisSpec {
   int kp = -1, ki = -1, kd = -1;
   int value = -1;         // reference kind `value`: position; trajectories: `to`, -1: stays
   int end_velocity = -1;  // trajectories, -1: 0
+  core::Mark mark;        // of its entry in `axes` or `joints`, else of these, else of the task
+  core::Mark value_mark;  // of what `value` was compiled from
 };
 
 // Where a task's reference comes from. `owner` is the state whose entry starts a trajectory.
@@ -41,6 +43,7 @@ struct TaskSpec {
   int integral_limit = -1;
   Range axes;  // into Behavior::axes
   ReferenceSpec reference;
+  core::Mark mark;  // of the task's name
 };
 
 struct InternalSpec {
@@ -49,6 +52,7 @@ struct InternalSpec {
   int reference = -1;  // expression, N at each contact
   int feedback = -1;   // expression, -1: 0
   double scale = 1.0;  // of the reference: 0.5 for the `sum` convention
+  core::Mark mark;     // of its reference
 };
 
 // A torque-continuous change of the contact set.
@@ -87,6 +91,7 @@ struct InvokeInfo {
   bool closed_form = false;     // what a late plan is replaced by, else the last one stays
   int stance = -1, swing = -1;  // contact indices
   int switch_in = -1;           // expression of a time
+  core::Mark mark;
 };
 
 }  // namespace footfall::behaviors

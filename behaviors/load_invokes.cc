@@ -66,6 +66,7 @@ void load_invoke(LoadContext& context, const core::YamlNode& node, int state) {
   if (planner == nullptr) return;
   InvokeInfo invoke;
   invoke.state = state;
+  invoke.mark = node.mark;
   invoke.planner = find_planner(context, *planner);
   ValueScope scope;
   scope.state = state;

@@ -97,6 +97,7 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
                    context.diagnostics);
   PlannerInfo planner;
   planner.name = entry.key;
+  planner.mark = map.find("kappa") != nullptr ? map.find("kappa")->mark : entry.key_mark;
   FootPlannerSpec& spec = planner.spec;
   read_pair(context, map, "kappa", core::kNone, spec.kappa);
   read_pair(context, map, "reversal", core::kTime, spec.reversal);

@@ -121,6 +121,16 @@ std::vector<int> compile_axes(LoadContext& context, const core::YamlNode& node,
   return out;
 }
 
+// The value of each axis and where it is written.
+void set_values(const core::YamlNode& node, const std::vector<int>& values,
+                std::vector<AxisSpec>& out) {
+  const bool listed = node.is_sequence() && node.items.size() == out.size();
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].value = values[k];
+    out[k].value_mark = listed ? node.items[k].mark : node.mark;
+  }
+}
+
 std::optional<Shape> read_shape(LoadContext& context, const core::YamlNode& map) {
   const core::YamlNode& name = *map.find("trajectory");
   for (const char* later : {"ellipse", "waypoints", "surface"}) {
@@ -177,8 +187,7 @@ void compile_trajectory(LoadContext& context, const core::YamlNode& map, AxesSco
   ValueScope scope;
   scope.state = axes.owner;
   reference.over = context.compile_time(*over, scope);
-  const std::vector<int> values = compile_axes(context, *to, axes, true);
-  for (std::size_t k = 0; k < out.size(); ++k) out[k].value = values[k];
+  set_values(*to, compile_axes(context, *to, axes, true), out);
   if (end_velocity != nullptr) {
     if (*shape == Shape::cosine) {
       context.error(end_velocity->mark, "misplaced-key",
@@ -212,8 +221,7 @@ void compile_reference(LoadContext& context, const DraftItem& item, const TaskTy
     return;
   }
   spec.reference.kind = ReferenceSpec::Kind::value;
-  const std::vector<int> values = compile_axes(context, *key->node, scope, false);
-  for (std::size_t k = 0; k < out.size(); ++k) out[k].value = values[k];
+  set_values(*key->node, compile_axes(context, *key->node, scope, false), out);
 }
 
 }  // namespace footfall::behaviors

@@ -42,6 +42,14 @@ int find_instance(LoadContext& context, const DraftItem& item, TaskType type, in
   return static_cast<int>(instances.size()) - 1;
 }
 
+// Where an axis is written: its entry in `axes` or `joints`, if there is one for each.
+core::Mark axis_mark(const DraftItem& item, const DraftKey* axes, std::size_t k,
+                     std::size_t count) {
+  if (axes == nullptr) return item.mark;
+  const bool listed = axes->node->is_sequence() && axes->node->items.size() == count;
+  return listed ? axes->node->items[k].mark : axes->node->mark;
+}
+
 // Gains written in the task, else those a state gives, innermost first, else the stack's table.
 GainEntry* choose_gains(LoadContext& context, const DraftItem& item, const Draft& draft) {
   if (const DraftKey* own = item.find("gains")) {
@@ -154,6 +162,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
   check_task_keys(context, item, *type);
   TaskSpec spec;
   spec.type = type->type;
+  spec.mark = item.mark;
   if (type->type == TaskType::point_position) {
     const DraftKey* point = item.find("point");
     if (point == nullptr) {
@@ -174,6 +183,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
     names.push_back(all[static_cast<std::size_t>(axis)]);
     specs.emplace_back();
     specs.back().axis = axis;
+    specs.back().mark = axis_mark(item, axes_key, specs.size() - 1, axes.size());
   }
   compile_frame(context, item, spec);
   if (const DraftKey* priority = item.find("priority")) {
@@ -221,6 +231,7 @@ std::optional<InternalSpec> compile_internal(LoadContext& context, const DraftIt
   if (spec.contact_a < 0 || spec.contact_b < 0) return std::nullopt;
   ValueScope scope;
   scope.state = reference->owner;
+  spec.mark = reference->node->mark;
   spec.reference = context.compile_value(*reference->node, core::kForce, scope);
   spec.feedback = compile_limit(context, item, "feedback", core::kNone);
   if (const DraftKey* convention = item.find("convention")) {
