@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
 namespace footfall::behaviors {
@@ -116,7 +117,7 @@ void load_mark(LoadContext& context, const core::YamlNode& node) {
 
 void load_action(LoadContext& context, const core::YamlNode& node, const ValueScope& scope) {
   if (!core::expect_map(node, "an action such as {mark: NAME}", context.diagnostics)) return;
-  core::check_keys(node, {"raise", "set", "log", "mark", "call"}, context.diagnostics);
+  core::check_keys(node, kActionKeys, context.diagnostics);
   for (const core::YamlEntry& entry : node.entries) {
     if (entry.key == "raise") load_raise(context, entry.value);
     if (entry.key == "set") load_set(context, entry.value, scope);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "behaviors/language.h"
 #include "behaviors/load_gains.h"
 #include "behaviors/load_tasks.h"
 
@@ -217,8 +218,7 @@ class ControlLoader {
   int compile_transition(const Draft& draft, const std::vector<int>& active) {
     const core::YamlNode& node = *draft.transition;
     if (!core::expect_map(node, "a map with releases or loads", context_.diagnostics)) return -1;
-    core::check_keys(node, {"releases", "loads", "over", "toward", "form", "doc"},
-                     context_.diagnostics);
+    core::check_keys(node, kContactTransitionKeys, context_.diagnostics);
     const core::YamlNode* releases = node.find("releases");
     const core::YamlNode* loads = node.find("loads");
     if ((releases == nullptr) == (loads == nullptr)) {
@@ -235,7 +235,7 @@ class ControlLoader {
       spec.over = context_.compile_time(*over, scope);
     }
     if (const auto* form = node.find("form")) {
-      const auto choice = core::read_choice(*form, {"continuous", "frozen"}, context_.diagnostics);
+      const auto choice = core::read_choice(*form, kTransitionForms, context_.diagnostics);
       if (choice && *choice == 1) spec.form = tasks::TransitionForm::frozen;
     }
     compile_toward(node, active, spec);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "behaviors/language.h"
+
 namespace footfall::behaviors {
 namespace {
 
@@ -153,8 +155,7 @@ const core::YamlNode* find_stack(LoadContext& context, const core::YamlNode& nam
   context.substituted.push_back(
       substitute(*stack, context.sources[static_cast<std::size_t>(state)]->arguments));
   const core::YamlNode& own = context.substituted.back();
-  core::check_keys(own, {"contacts", "tasks", "internal", "torque_loop", "gains", "doc"},
-                   context.diagnostics);
+  core::check_keys(own, kStackKeys, context.diagnostics);
   check_resolved(context, own);
   return context.stack_cache[{name.scalar, state}] = &own;
 }

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "behaviors/language.h"
 #include "core/glob.h"
 
 namespace footfall::behaviors {
@@ -16,7 +17,7 @@ constexpr std::array<core::Dimension, 3> kDimensions = {core::kRateSquared,
 
 void load_ranges(LoadContext& context, const core::YamlNode& ranges) {
   if (!core::expect_map(ranges, "ranges of kp, ki and kd", context.diagnostics)) return;
-  core::check_keys(ranges, {"kp", "ki", "kd"}, context.diagnostics);
+  core::check_keys(ranges, kGainRangesKeys, context.diagnostics);
   for (std::size_t k = 0; k < 3; ++k) {
     if (const auto* node = ranges.find(kGains[k])) {
       context.gain_ranges[k] = core::read_range(*node, kDimensions[k], context.diagnostics);
@@ -107,7 +108,7 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainUse& use) {
 
 bool check_entry(LoadContext& context, const core::YamlNode& node) {
   if (!core::expect_map(node, "gains: a map with kp, ki, kd", context.diagnostics)) return false;
-  core::check_keys(node, {"kp", "ki", "kd"}, context.diagnostics);
+  core::check_keys(node, kGainsKeys, context.diagnostics);
   if (node.entries.empty()) {
     context.error(node.mark, "missing-key", "expected at least one of kp, ki, kd");
   }

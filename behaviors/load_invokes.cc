@@ -1,6 +1,7 @@
 // `invoke:` of a state: which planner is asked when, and what a late answer is replaced by.
 #include <fmt/format.h>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
 namespace footfall::behaviors {
@@ -44,7 +45,7 @@ void read_with(LoadContext& context, const core::YamlNode& node, const ValueScop
                InvokeInfo& invoke) {
   const core::YamlNode* with = core::require_key(node, "with", context.diagnostics);
   if (with == nullptr || !core::expect_map(*with, "a map", context.diagnostics)) return;
-  core::check_keys(*with, {"stance", "swing", "switch_in"}, context.diagnostics);
+  core::check_keys(*with, kInvokeWithKeys, context.diagnostics);
   const core::YamlNode* stance = core::require_key(*with, "stance", context.diagnostics);
   const core::YamlNode* swing = core::require_key(*with, "swing", context.diagnostics);
   const core::YamlNode* switch_in = core::require_key(*with, "switch_in", context.diagnostics);
@@ -60,8 +61,7 @@ void read_with(LoadContext& context, const core::YamlNode& node, const ValueScop
 
 void load_invoke(LoadContext& context, const core::YamlNode& node, int state) {
   if (!core::expect_map(node, "a map with planner and with", context.diagnostics)) return;
-  core::check_keys(node, {"planner", "at", "every", "with", "deadline", "on_late", "doc"},
-                   context.diagnostics);
+  core::check_keys(node, kInvokeKeys, context.diagnostics);
   const core::YamlNode* planner = core::require_key(node, "planner", context.diagnostics);
   if (planner == nullptr) return;
   InvokeInfo invoke;
@@ -87,8 +87,8 @@ void load_invoke(LoadContext& context, const core::YamlNode& node, int state) {
     invoke.deadline = context.compile_time(*deadline, scope);
   }
   if (const auto* late = node.find("on_late")) {
-    const auto choice = core::read_choice(*late, {"closed_form", "keep_last"}, context.diagnostics);
-    invoke.closed_form = choice && *choice == 0;
+    const auto choice = core::read_choice(*late, kOnLate, context.diagnostics);
+    invoke.closed_form = choice && *choice == 1;
   }
   read_with(context, node, scope, invoke);
   context.behavior.invokes.push_back(invoke);

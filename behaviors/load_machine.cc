@@ -3,16 +3,11 @@
 
 #include <algorithm>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
 namespace footfall::behaviors {
 namespace {
-
-const std::vector<std::string> kStateKeys = {
-    "doc",    "initial",  "type",     "depth",       "default",     "stack",
-    "tasks",  "internal", "contacts", "gains",       "torque_loop", "contact_transition",
-    "invoke", "on_entry", "on_exit",  "transitions", "after",       "to",
-    "done",   "states",   "use",      "with",        "mirror"};
 
 StateInfo& info_of(LoadContext& context, int s) {
   return context.behavior.states[static_cast<std::size_t>(s)];
@@ -23,8 +18,7 @@ void read_kind(LoadContext& context, StateSource& source, StateInfo& info) {
   info.kind = parent ? StateKind::compound : StateKind::atomic;
   const core::YamlNode* type = source.keys.find("type");
   if (type == nullptr) return;
-  const auto choice = core::read_choice(*type, {"parallel", "final", "history"},
-                                        context.diagnostics, "a type of state");
+  const auto choice = core::read_choice(*type, kStateTypes, context.diagnostics, "a type of state");
   if (!choice) return;
   if (*choice == 0) {
     info.kind = StateKind::parallel;
@@ -46,9 +40,7 @@ void read_kind(LoadContext& context, StateSource& source, StateInfo& info) {
 }
 
 void check_state_keys(LoadContext& context, const StateSource& source, const StateInfo& info) {
-  std::vector<std::string> known = kStateKeys;
-  if (info.parent < 0) known.insert(known.end(), {"safe", "micro_steps"});
-  core::check_keys(source.keys, known, context.diagnostics);
+  core::check_keys(source.keys, info.parent < 0 ? kMachineKeys : kStateKeys, context.diagnostics);
   const auto refuse = [&](const char* key, bool wrong, const char* text) {
     const core::YamlNode* node = source.keys.find(key);
     if (node != nullptr && wrong) context.error(node->mark, "misplaced-key", text);
@@ -135,7 +127,7 @@ void load_history(LoadContext& context, int s) {
   const core::YamlNode& keys = context.sources[static_cast<std::size_t>(s)]->keys;
   const StateInfo& parent = info_of(context, info.parent);
   if (const auto* depth = keys.find("depth")) {
-    const auto deep = core::read_choice(*depth, {"shallow", "deep"}, context.diagnostics);
+    const auto deep = core::read_choice(*depth, kHistoryDepths, context.diagnostics);
     if (deep && *deep == 1) info.kind = StateKind::history_deep;
   }
   const core::YamlNode* node = keys.find("default");

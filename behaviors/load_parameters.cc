@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
 namespace footfall::behaviors {
@@ -82,7 +83,7 @@ void load_parameter(LoadContext& context, const core::YamlEntry& entry) {
   static const core::YamlNode empty;
   const bool is_map = entry.value.is_map();
   const core::YamlNode& map = is_map ? entry.value : empty;
-  if (is_map) core::check_keys(map, {"value", "range", "live", "doc"}, context.diagnostics);
+  if (is_map) core::check_keys(map, kParameterKeys, context.diagnostics);
   const core::YamlNode* value =
       is_map ? core::require_key(map, "value", context.diagnostics) : &entry.value;
   if (value == nullptr) return;

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
 namespace footfall::behaviors {
@@ -60,7 +61,7 @@ void read_reach(LoadContext& context, const core::YamlNode& map, FootPlannerSpec
   if (reach == nullptr || !core::expect_map(*reach, "a map with x and y", context.diagnostics)) {
     return;
   }
-  core::check_keys(*reach, {"x", "y"}, context.diagnostics);
+  core::check_keys(*reach, kReachKeys, context.diagnostics);
   read_limit(context, *reach, "x", core::kLength, spec.reach_x);
   const core::YamlNode* y = reach->find("y");
   if (y == nullptr) return;
@@ -77,7 +78,7 @@ void read_extension(LoadContext& context, const core::YamlNode& map, FootPlanner
   const core::YamlNode* extension = map.find("extension");
   if (extension == nullptr || core::is_off(*extension)) return;
   if (!core::expect_map(*extension, "a map with speed and limit", context.diagnostics)) return;
-  core::check_keys(*extension, {"speed", "limit"}, context.diagnostics);
+  core::check_keys(*extension, kExtensionKeys, context.diagnostics);
   read_limit(context, *extension, "speed", core::kVelocity, spec.extension_speed);
   read_limit(context, *extension, "limit", core::kTime, spec.extension_limit);
 }
@@ -88,13 +89,10 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
   if (!core::expect_map(map, "a planner", context.diagnostics)) return;
   const core::YamlNode* type = core::require_key(map, "type", context.diagnostics);
   if (type == nullptr ||
-      !core::read_choice(*type, {"velocity_reversal"}, context.diagnostics, "a type of planner")) {
+      !core::read_choice(*type, kPlannerTypes, context.diagnostics, "a type of planner")) {
     return;
   }
-  core::check_keys(map,
-                   {"type", "kappa", "reversal", "goal", "width_offset", "goal_error_limit",
-                    "reach", "extension", "velocity_filter", "goal_speed", "doc"},
-                   context.diagnostics);
+  core::check_keys(map, kPlannerKeys, context.diagnostics);
   PlannerInfo planner;
   planner.name = entry.key;
   planner.mark = map.find("kappa") != nullptr ? map.find("kappa")->mark : entry.key_mark;

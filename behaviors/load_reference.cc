@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "behaviors/language.h"
 #include "behaviors/load_tasks.h"
 #include "core/glob.h"
 
@@ -139,8 +140,7 @@ std::optional<Shape> read_shape(LoadContext& context, const core::YamlNode& map)
                   fmt::format("trajectory '{}' is not available in this version", later));
     return std::nullopt;
   }
-  const auto choice = core::read_choice(name, {"hold", "polynomial", "cosine", "minimum_jerk"},
-                                        context.diagnostics, "a trajectory");
+  const auto choice = core::read_choice(name, kTrajectories, context.diagnostics, "a trajectory");
   if (!choice) return std::nullopt;
   const core::YamlNode* order = map.find("order");
   if (*choice != 1 && order != nullptr) {
@@ -163,8 +163,7 @@ std::optional<Shape> read_shape(LoadContext& context, const core::YamlNode& map)
 
 void compile_trajectory(LoadContext& context, const core::YamlNode& map, AxesScope axes,
                         ReferenceSpec& reference, std::vector<AxisSpec>& out) {
-  core::check_keys(map, {"trajectory", "order", "to", "over", "end_velocity", "retarget"},
-                   context.diagnostics);
+  core::check_keys(map, kTrajectoryKeys, context.diagnostics);
   const auto shape = read_shape(context, map);
   if (!shape) return;
   reference.kind = ReferenceSpec::Kind::trajectory;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "behaviors/language.h"
 #include "behaviors/load_gains.h"
 
 namespace footfall::behaviors {
@@ -104,8 +105,7 @@ void compile_frame(LoadContext& context, const DraftItem& item, TaskSpec& spec) 
   if (key == nullptr) return;
   const std::string expected = orientation ? "heading" : "world";
   if (key->node->scalar == expected) return;
-  const auto choice =
-      core::read_choice(*key->node, {"world", "stance", "heading"}, context.diagnostics, "a frame");
+  const auto choice = core::read_choice(*key->node, kFrames, context.diagnostics, "a frame");
   if (choice) {
     context.error(key->node->mark, "not-available",
                   fmt::format("frame '{}' of a {} is not available in this version (expected {})",
@@ -128,11 +128,7 @@ int compile_limit(LoadContext& context, const DraftItem& item, const char* name,
 }
 
 void check_task_keys(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type) {
-  std::vector<std::string> known = {"type",   "gains",    "integral_limit", "acceleration_limit",
-                                    "weight", "priority", "frame",          "doc"};
-  if (type.type != TaskType::joint_damping) known.emplace_back("reference");
-  known.emplace_back(type.joints ? "joints" : "axes");
-  if (type.type == TaskType::point_position) known.emplace_back("point");
+  const std::vector<std::string> known = core::key_names(kTaskKeys, type.name);
   core::YamlNode map;  // the merged keys, for check_keys
   map.kind = core::YamlNode::Kind::map;
   for (const DraftKey& key : item.keys) {
@@ -207,8 +203,7 @@ std::optional<InternalSpec> compile_internal(LoadContext& context, const DraftIt
   core::YamlNode map;
   map.kind = core::YamlNode::Kind::map;
   for (const DraftKey& key : item.keys) map.entries.push_back({key.key, key.node->mark, false, {}});
-  core::check_keys(map, {"between", "reference", "feedback", "convention", "doc"},
-                   context.diagnostics);
+  core::check_keys(map, kInternalKeys, context.diagnostics);
   const DraftKey* between = item.find("between");
   const DraftKey* reference = item.find("reference");
   if (between == nullptr || reference == nullptr) {
@@ -235,7 +230,7 @@ std::optional<InternalSpec> compile_internal(LoadContext& context, const DraftIt
   spec.reference = context.compile_value(*reference->node, core::kForce, scope);
   spec.feedback = compile_limit(context, item, "feedback", core::kNone);
   if (const DraftKey* convention = item.find("convention")) {
-    const auto choice = core::read_choice(*convention->node, {"mean", "sum"}, context.diagnostics);
+    const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
     if (choice && *choice == 1) spec.scale = 0.5;
   }
   const auto& names = context.behavior.internal_instances;

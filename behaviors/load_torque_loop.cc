@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 #include "core/glob.h"
 
@@ -44,7 +45,7 @@ void load_torque_loops(LoadContext& context) {
   for (const core::YamlEntry& entry : section->entries) {
     if (!core::check_name(entry, context.diagnostics, "the name of a torque loop")) continue;
     if (!core::expect_map(entry.value, "a map with p, i, d", context.diagnostics)) continue;
-    core::check_keys(entry.value, {"p", "i", "d"}, context.diagnostics);
+    core::check_keys(entry.value, kTorqueLoopKeys, context.diagnostics);
     context.behavior.torque_loops.push_back(
         {entry.key, read_joints(context, entry.value.find("p"), core::kNone),
          read_joints(context, entry.value.find("i"), core::kRate),

@@ -1,6 +1,7 @@
 // Transitions, in document order, the timed `after` + `to` of a state last.
 #include <fmt/format.h>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
 namespace footfall::behaviors {
@@ -26,8 +27,7 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
   if (!core::expect_map(node, "a transition (a map with on, when or after)", context.diagnostics)) {
     return;
   }
-  core::check_keys(node, {"on", "when", "after", "to", "internal", "do", "reason", "doc"},
-                   context.diagnostics);
+  core::check_keys(node, kTransitionKeys, context.diagnostics);
   const core::YamlNode* on = node.find("on");
   const core::YamlNode* when = node.find("when");
   const core::YamlNode* after = node.find("after");

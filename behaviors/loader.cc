@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
 namespace footfall::behaviors {
@@ -39,10 +40,7 @@ void load_robot(LoadContext& context, const std::string& path) {
 // Whether later steps make sense: the tree of states stands, and the robot is known.
 bool load_structure(LoadContext& context, const std::string& path) {
   if (!core::check_kind(context.root, "behavior", 1, context.diagnostics)) return false;
-  core::check_keys(context.root,
-                   {"behavior", "name", "doc", "robot", "parameters", "events", "gains",
-                    "torque_loop", "planners", "stacks", "templates", "machine"},
-                   context.diagnostics);
+  core::check_keys(context.root, kBehaviorKeys, context.diagnostics);
   apply_overrides(context);
   const int before = context.diagnostics.error_count();
   load_robot(context, path);

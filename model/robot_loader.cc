@@ -12,6 +12,7 @@
 #include "core/limits.h"
 #include "core/value_reader.h"
 #include "model/robot_description.h"
+#include "model/robot_keys.h"
 
 namespace footfall::model {
 
@@ -35,11 +36,7 @@ class RobotLoader {
   RobotDescription load() {
     const YamlNode root = core::load_yaml_with_base(robot_.path, diagnostics_);
     if (!core::check_kind(root, "robot", 1, diagnostics_)) return std::move(robot_);
-    core::check_keys(
-        root,
-        {"robot", "name", "doc", "model", "floating_base", "rate", "standing_height", "posture",
-         "joints", "groups", "contacts", "points", "sensors", "symmetry", "limits", "faults"},
-        diagnostics_);
+    core::check_keys(root, kRobotKeys, diagnostics_);
     read_head(root);
     if (const YamlNode* node = core::require_key(root, "joints", diagnostics_)) read_joints(*node);
     if (const YamlNode* node = root.find("posture")) read_posture(*node);
@@ -136,7 +133,7 @@ class RobotLoader {
   }
 
   void read_joint(const YamlNode& node, JointDescription& joint) {
-    core::check_keys(node, {"position", "torque", "sea"}, diagnostics_);
+    core::check_keys(node, kJointKeys, diagnostics_);
     if (const YamlNode* position = core::require_key(node, "position", diagnostics_)) {
       const auto range = core::read_range(*position, core::kNone, diagnostics_, "an angle");
       // Without limits the posture is not judged by them.
@@ -149,7 +146,7 @@ class RobotLoader {
     const YamlNode* const sea = node.find("sea");
     if (sea == nullptr) return;
     if (!core::expect_map(*sea, "{spring: STIFFNESS, rotor: INERTIA}", diagnostics_)) return;
-    core::check_keys(*sea, {"spring", "rotor"}, diagnostics_);
+    core::check_keys(*sea, kSeaKeys, diagnostics_);
     // N m/rad: an angle has no dimension, so a stiffness is a torque here.
     read_positive(*sea, "spring", core::kTorque, joint.spring);
     read_positive(*sea, "rotor", core::kInertia, joint.rotor);
@@ -204,11 +201,11 @@ class RobotLoader {
   }
 
   void read_contact(const YamlNode& node, ContactDescription& contact) {
-    core::check_keys(node, {"site", "type", "group", "radius"}, diagnostics_);
+    core::check_keys(node, kContactKeys, diagnostics_);
     contact.site = read_site(node);
     if (const YamlNode* type = node.find("type")) {
-      const auto choice = core::read_choice(*type, {"point", "surface", "fixed"}, diagnostics_,
-                                            "a type of contact");
+      const auto choice =
+          core::read_choice(*type, kContactTypes, diagnostics_, "a type of contact");
       if (choice) contact.type = static_cast<ContactType>(*choice);
     }
     if (const YamlNode* radius = node.find("radius")) {
@@ -240,7 +237,7 @@ class RobotLoader {
       }
       PointDescription point{entry.key, {}};
       if (core::expect_map(entry.value, "a point: {site: NAME}", diagnostics_)) {
-        core::check_keys(entry.value, {"site"}, diagnostics_);
+        core::check_keys(entry.value, kPointKeys, diagnostics_);
         point.site = read_site(entry.value);
       }
       robot_.points.push_back(std::move(point));
@@ -249,16 +246,16 @@ class RobotLoader {
 
   void read_sensors(const YamlNode& node) {
     if (!core::expect_map(node, "a map of sensors", diagnostics_)) return;
-    core::check_keys(node, {"imu", "mocap", "switches"}, diagnostics_);
+    core::check_keys(node, kSensorsKeys, diagnostics_);
     if (const YamlNode* imu = node.find("imu")) {
       if (core::expect_map(*imu, "{site: NAME}", diagnostics_)) {
-        core::check_keys(*imu, {"site"}, diagnostics_);
+        core::check_keys(*imu, kImuKeys, diagnostics_);
         robot_.sensors.imu_site = read_site(*imu);
       }
     }
     if (const YamlNode* mocap = node.find("mocap")) {
       if (core::expect_map(*mocap, "{sites: [NAMES]}", diagnostics_)) {
-        core::check_keys(*mocap, {"sites"}, diagnostics_);
+        core::check_keys(*mocap, kMocapKeys, diagnostics_);
         if (const YamlNode* sites = core::require_key(*mocap, "sites", diagnostics_)) {
           robot_.sensors.mocap_sites = core::read_texts(*sites, diagnostics_, "a site's name")
                                            .value_or(std::vector<std::string>());
@@ -273,7 +270,7 @@ class RobotLoader {
 
   void read_symmetry(const YamlNode& node) {
     if (!core::expect_map(node, "{swap: [[A, B], ...]}", diagnostics_)) return;
-    core::check_keys(node, {"swap"}, diagnostics_);
+    core::check_keys(node, kSymmetryKeys, diagnostics_);
     const YamlNode* const swap = core::require_key(node, "swap", diagnostics_);
     if (swap == nullptr || !core::expect_sequence(*swap, "a list of pairs [A, B]", diagnostics_)) {
       return;
@@ -310,7 +307,7 @@ class RobotLoader {
 
   void read_limits(const YamlNode& node) {
     if (!core::expect_map(node, "a map of limits", diagnostics_)) return;
-    core::check_keys(node, {"tilt", "height", "torque_step"}, diagnostics_);
+    core::check_keys(node, kLimitsKeys, diagnostics_);
     const auto read = [&](std::string_view key, core::Dimension dimension, double maximum,
                           std::string_view what, double& out) {
       const YamlNode* const value = node.find(key);
@@ -330,8 +327,7 @@ class RobotLoader {
     }
     for (const YamlEntry& entry : node.entries) {
       const auto found = std::find(names.begin(), names.end(), entry.key);
-      const auto choice = core::read_choice(entry.value, {"continue", "safe_state", "safe_stop"},
-                                            diagnostics_, "a reaction");
+      const auto choice = core::read_choice(entry.value, kReactions, diagnostics_, "a reaction");
       if (found == names.end()) {
         diagnostics_.error(
             entry.key_mark, "unknown-name",

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/value_reader.h"
+#include "sim/world_keys.h"
 
 namespace footfall::sim {
 
@@ -31,10 +32,7 @@ class WorldLoader {
   WorldDescription load() {
     const YamlNode root = core::load_yaml_with_base(world_.path, diagnostics_);
     if (!core::check_kind(root, "world", 1, diagnostics_)) return std::move(world_);
-    core::check_keys(root,
-                     {"world", "name", "doc", "ground", "surface", "actuators", "sensors",
-                      "control_model", "constraints", "planner_latency", "start", "physics"},
-                     diagnostics_);
+    core::check_keys(root, kWorldKeys, diagnostics_);
     read_head(root);
     if (const YamlNode* node = root.find("ground")) read_ground(*node);
     if (const YamlNode* node = root.find("surface")) read_surface(*node);
@@ -68,7 +66,7 @@ class WorldLoader {
 
   void read_ground(const YamlNode& node) {
     if (!core::expect_map(node, "{friction: NUMBER, terrain: [...]}", diagnostics_)) return;
-    core::check_keys(node, {"friction", "terrain"}, diagnostics_);
+    core::check_keys(node, kGroundKeys, diagnostics_);
     constexpr double kLargestFriction = 10.0;
     read_bounded(node, "friction", core::kNone, 0.0, kLargestFriction, world_.friction);
     const YamlNode* const terrain = node.find("terrain");
@@ -81,14 +79,14 @@ class WorldLoader {
                             diagnostics_)) {
         continue;
       }
-      core::check_keys(piece, {"box"}, diagnostics_);
+      core::check_keys(piece, kTerrainKeys, diagnostics_);
       if (const YamlNode* box = core::require_key(piece, "box", diagnostics_)) read_box(*box);
     }
   }
 
   void read_box(const YamlNode& node) {
     if (!core::expect_map(node, "a box: {at: [X, Y], size: [X, Y, Z]}", diagnostics_)) return;
-    core::check_keys(node, {"at", "size"}, diagnostics_);
+    core::check_keys(node, kBoxKeys, diagnostics_);
     TerrainBox box;
     box.mark = node.mark;
     if (const YamlNode* at = core::require_key(node, "at", diagnostics_)) {
@@ -109,12 +107,12 @@ class WorldLoader {
   void read_surface(const YamlNode& node) {
     world_.surface_mark = node.mark;
     if (!core::expect_map(node, "{ramps: [{from: X, to: X, rise: Z}, ...]}", diagnostics_)) return;
-    core::check_keys(node, {"ramps"}, diagnostics_);
+    core::check_keys(node, kSurfaceKeys, diagnostics_);
     const YamlNode* const ramps = core::require_key(node, "ramps", diagnostics_);
     if (ramps == nullptr || !core::expect_sequence(*ramps, "a list of ramps", diagnostics_)) return;
     for (const YamlNode& item : ramps->items) {
       if (!core::expect_map(item, "a ramp: {from: X, to: X, rise: Z}", diagnostics_)) continue;
-      core::check_keys(item, {"from", "to", "rise"}, diagnostics_);
+      core::check_keys(item, kRampKeys, diagnostics_);
       SurfaceRamp ramp;
       ramp.mark = item.mark;
       bool good = true;
@@ -134,7 +132,7 @@ class WorldLoader {
 
   void read_start(const YamlNode& node) {
     if (!core::expect_map(node, "a map", diagnostics_)) return;
-    core::check_keys(node, {"velocity"}, diagnostics_);
+    core::check_keys(node, kStartKeys, diagnostics_);
     read_bounded(node, "velocity", core::kVelocity, 0.0, 10.0, world_.start_velocity);
   }
 
@@ -142,11 +140,11 @@ class WorldLoader {
     ActuatorSettings& actuators = world_.actuators;
     actuators.mark = node.mark;
     if (!core::expect_map(node, "{model: ideal}", diagnostics_)) return;
-    core::check_keys(node, {"model", "command_delay", "coulomb"}, diagnostics_);
+    core::check_keys(node, kActuatorsKeys, diagnostics_);
     if (const YamlNode* model = node.find("model")) {
       actuators.mark = model->mark;
       const auto choice =
-          core::read_choice(*model, {"ideal", "series_elastic"}, diagnostics_, "an actuator model");
+          core::read_choice(*model, kActuatorModels, diagnostics_, "an actuator model");
       if (choice) actuators.model = static_cast<ActuatorModel>(*choice);
     }
     constexpr double kLongestDelay = 1.0;
@@ -157,7 +155,7 @@ class WorldLoader {
 
   void read_sensors(const YamlNode& node) {
     if (!core::expect_map(node, "a map of sensors", diagnostics_)) return;
-    core::check_keys(node, {"joint", "gyro", "mocap", "switch"}, diagnostics_);
+    core::check_keys(node, kWorldSensorsKeys, diagnostics_);
     SensorSettings& sensors = world_.sensors;
     struct Key {
       std::string name;
@@ -166,16 +164,15 @@ class WorldLoader {
       double* out;
       std::string_view what = {};
     };
-    const auto section = [&](const std::string& name, const std::vector<Key>& keys) {
+    const auto section = [&](const std::string& name, const core::KeyTable& table,
+                             const std::vector<Key>& keys) {
       const YamlNode* const map = node.find(name);
       if (map == nullptr) return;
       if (!core::expect_map(*map, fmt::format("a map of the {} sensor's imperfections", name),
                             diagnostics_)) {
         return;
       }
-      std::vector<std::string> known;
-      for (const Key& key : keys) known.push_back(key.name);
-      core::check_keys(*map, known, diagnostics_);
+      core::check_keys(*map, table, diagnostics_);
       for (const Key& key : keys) {
         read_bounded(*map, key.name, key.dimension, 0.0, key.maximum, *key.out, key.what);
         if (const YamlNode* value = map->find(key.name)) {
@@ -184,20 +181,24 @@ class WorldLoader {
       }
     };
     constexpr double kAny = kInfinity;
-    section("joint", {{"resolution", core::kNone, kAny, &sensors.joint_resolution, "an angle"}});
-    section("gyro", {{"noise", core::kRate, kAny, &sensors.gyro_noise, "an angular velocity"},
-                     {"bias", core::kRate, kAny, &sensors.gyro_bias, "an angular velocity"}});
-    section("mocap", {{"rate", core::kRate, kAny, &sensors.mocap_rate, "a rate in Hz"},
-                      {"delay", core::kTime, kAny, &sensors.mocap_delay},
-                      {"noise", core::kLength, kAny, &sensors.mocap_noise},
-                      {"occlusion", core::kNone, 1.0, &sensors.mocap_occlusion}});
-    section("switch", {{"delay", core::kTime, kAny, &sensors.switch_delay},
-                       {"threshold", core::kForce, kAny, &sensors.switch_threshold}});
+    section("joint", kJointSensorKeys,
+            {{"resolution", core::kNone, kAny, &sensors.joint_resolution, "an angle"}});
+    section("gyro", kGyroKeys,
+            {{"noise", core::kRate, kAny, &sensors.gyro_noise, "an angular velocity"},
+             {"bias", core::kRate, kAny, &sensors.gyro_bias, "an angular velocity"}});
+    section("mocap", kMocapSensorKeys,
+            {{"rate", core::kRate, kAny, &sensors.mocap_rate, "a rate in Hz"},
+             {"delay", core::kTime, kAny, &sensors.mocap_delay},
+             {"noise", core::kLength, kAny, &sensors.mocap_noise},
+             {"occlusion", core::kNone, 1.0, &sensors.mocap_occlusion}});
+    section("switch", kSwitchKeys,
+            {{"delay", core::kTime, kAny, &sensors.switch_delay},
+             {"threshold", core::kForce, kAny, &sensors.switch_threshold}});
   }
 
   void read_control_model(const YamlNode& node) {
     if (!core::expect_map(node, "{mass: \"+5 %\", com: {LINK: [X, Y, Z]}}", diagnostics_)) return;
-    core::check_keys(node, {"mass", "com"}, diagnostics_);
+    core::check_keys(node, kControlModelKeys, diagnostics_);
     if (const YamlNode* mass = node.find("mass")) read_mass(*mass);
     const YamlNode* const com = node.find("com");
     if (com == nullptr || !core::expect_map(*com, "a map by link", diagnostics_)) return;
@@ -233,15 +234,12 @@ class WorldLoader {
 
   void read_physics(const YamlNode& node) {
     if (!core::expect_map(node, "a map of physics settings", diagnostics_)) return;
-    core::check_keys(node,
-                     {"timestep_divisor", "integrator", "solver", "cone", "impratio", "iterations",
-                      "tolerance", "solref", "solimp"},
-                     diagnostics_);
+    core::check_keys(node, kPhysicsKeys, diagnostics_);
     PhysicsSettings& physics = world_.physics;
     read_integer(node, "timestep_divisor", 1000, physics.steps_per_tick);
-    read_choice(node, "integrator", {"euler", "rk4", "implicit"}, physics.integrator);
-    read_choice(node, "solver", {"newton", "cg", "pgs"}, physics.solver);
-    read_choice(node, "cone", {"elliptic", "pyramidal"}, physics.cone);
+    read_choice(node, "integrator", kIntegrators, physics.integrator);
+    read_choice(node, "solver", kSolvers, physics.solver);
+    read_choice(node, "cone", kCones, physics.cone);
     read_bounded(node, "impratio", core::kNone, 1e-3, 1e6, physics.impratio);
     read_integer(node, "iterations", 100'000, physics.iterations);
     read_bounded(node, "tolerance", core::kNone, 0.0, 1.0, physics.tolerance);
@@ -257,7 +255,7 @@ class WorldLoader {
 
   template <typename Enum>
   void read_choice(const YamlNode& map, std::string_view key,
-                   const std::vector<std::string>& choices, Enum& out) {
+                   std::span<const core::WordSpec> choices, Enum& out) {
     const YamlNode* const node = map.find(key);
     if (node == nullptr) return;
     if (const auto choice = core::read_choice(*node, choices, diagnostics_)) {

@@ -1,0 +1,126 @@
+// Tasks, internal forces and trajectories; see language.h.
+#include "behaviors/language.h"
+
+namespace footfall::behaviors {
+namespace {
+
+using namespace core;  // the words in which tables are written
+
+// Each has its TaskTypeInfo (load_signals.cc), a test holds them together.
+constexpr WordSpec kTaskTypeRows[] = {
+    {"com_position", "the centre of mass"},
+    {"body_orientation",
+     "the floating base's orientation, about the axes of the heading frame; an axis left out is "
+     "free"},
+    {"point_position", "a named point or contact"},
+    {"joint_posture", "joint angles"},
+    {"joint_damping", "brings joints to rest: kd only, no reference"},
+};
+
+constexpr WordSpec kFrameRows[] = {
+    {"world", "fixed"},
+    {"stance", "of the foot that stands"},
+    {"heading", "upright, turned to where the base looks"},
+};
+
+constexpr ValueSpec kReferenceValue =
+    computed(by_axis(any_quantity("m, or rad; `entry` is where the task started")));
+
+constexpr KeySpec kTaskRows[] = {
+    key("type", choice(kTaskTypeRows), "what is controlled; a state may leave it to the stack")
+        .required(),
+    key("axes", list(name_of("an axis")),
+        "which axes; one left out is free, the order is that of "
+        "`reference` and gains")
+        .otherwise("all")
+        .only("com_position body_orientation point_position"),
+    key("joints", list(name_of("a joint")), "which joints, by name or glob (\"*_hip\")")
+        .otherwise("all")
+        .only("joint_posture joint_damping"),
+    key("point", name_of("a contact or point"), "which point of the robot; needed")
+        .only("point_position"),
+    key("frame", choice(kFrameRows), "in which its axes are meant")
+        .otherwise("world; orientations heading"),
+    key("priority", integer(1, 1000),
+        "its level: a larger number acts only in the null space of the smaller ones")
+        .otherwise("1"),
+    key("weight", computed(quantity(kNone)), "against the other tasks of its level").otherwise("1"),
+    key("reference", kReferenceValue, map_of(kTrajectoryKeys),
+        "what it should be: a value an axis (number, expression, signal, `planner.NAME.target`), "
+        "or a trajectory")
+        .only("com_position body_orientation point_position joint_posture"),
+    key("gains", name_of("a gain table"), map_of(kGainsKeys),
+        "its gains, or another table that has them")
+        .otherwise("those of the state's or stack's table"),
+    key("integral_limit", computed(any_quantity("m s or rad s")),
+        "bound of the integral of the error on each axis")
+        .otherwise("none"),
+    key("acceleration_limit", computed(any_quantity("m/s^2 or rad/s^2")),
+        "bound of the acceleration it asks for on each axis")
+        .otherwise("none"),
+    key("doc", text_of("a text"), "what it is for, in a line"),
+};
+
+constexpr WordSpec kConventionRows[] = {
+    {"mean", "the reference is the force at each contact"},
+    {"sum", "the reference is twice that: the paper's way"},
+};
+
+constexpr KeySpec kInternalRows[] = {
+    key("between", pair(name_of("a contact")), "the two contacts").required(),
+    key("reference", computed(quantity(kForce)), "positive pushes them apart").required(),
+    key("feedback", computed(quantity(kNone)), "gain on the error of the measured force")
+        .otherwise("0"),
+    key("convention", choice(kConventionRows), "what `reference` counts").otherwise("mean"),
+    key("doc", text_of("a text"), "what it is for, in a line"),
+};
+
+constexpr WordSpec kTrajectoryRows[] = {
+    {"hold", "stays where it is"},
+    {"polynomial", "of order 3 or 5, from value and velocity at entry"},
+    {"cosine", "half a cosine wave, at rest at both ends"},
+    {"minimum_jerk", "the smoothest motion"},
+};
+constexpr std::string_view kMoving = "polynomial cosine minimum_jerk";
+
+constexpr KeySpec kTrajectoryKeyRows[] = {
+    key("trajectory", choice(kTrajectoryRows), "its shape").required(),
+    key("order", integer(3, 5), "3 or 5").only("polynomial"),
+    key("to", kReferenceValue, "where it ends; an axis left out of a map stays").only(kMoving),
+    key("over", computed(quantity(kTime)), "how long it takes, read at entry").only(kMoving),
+    key("end_velocity", computed(by_axis(any_quantity("m/s or rad/s"))),
+        "velocity at the end, kept afterwards")
+        .otherwise("0")
+        .only("polynomial minimum_jerk"),
+    key("retarget", boolean(), quantity(kNone, "a part of `over`, at most 95 %"),
+        "whether it follows a `to` that changes: true (for 80 % of `over`), or for which part")
+        .otherwise("false")
+        .only(kMoving),
+};
+
+}  // namespace
+
+constinit const core::KeyTable kTaskKeys = {
+    .id = "task",
+    .doc =
+        "Something to control, with a priority. A task in force before (same name, type and "
+        "point) keeps its reference and integral.",
+    .keys = kTaskRows,
+    .selector = "type",
+    .variants = kTaskTypeRows};
+constinit const core::KeyTable kInternalKeys = {
+    .id = "internal",
+    .doc = "A force between contacts that moves nothing. Pairs that are not named get 0 N.",
+    .keys = kInternalRows};
+constinit const core::KeyTable kTrajectoryKeys = {
+    .id = "trajectory",
+    .doc = "A motion from the value at entry, with feed-forward.",
+    .keys = kTrajectoryKeyRows,
+    .selector = "trajectory",
+    .variants = kTrajectoryRows};
+constinit const std::span<const core::WordSpec> kTaskTypes = kTaskTypeRows;
+constinit const std::span<const core::WordSpec> kFrames = kFrameRows;
+constinit const std::span<const core::WordSpec> kConventions = kConventionRows;
+constinit const std::span<const core::WordSpec> kTrajectories = kTrajectoryRows;
+
+}  // namespace footfall::behaviors

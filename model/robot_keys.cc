@@ -1,0 +1,135 @@
+// Keys and words of a robot file; see robot_keys.h.
+#include "model/robot_keys.h"
+
+namespace footfall::model {
+namespace {
+
+using namespace core;  // the words in which tables are written
+
+constexpr WordSpec kReactionRows[] = {
+    {"continue", "it is counted and logged"},
+    {"safe_state", "the behavior's `safe` state is entered"},
+    {"safe_stop", "the run ends at once"},
+};
+
+constexpr KeySpec kRobotRows[] = {
+    key("robot", integer(1, 1), "the version of robot files; the first key").required(),
+    key("base", text_of("the path of a robot file"),
+        "a file this one inherits, relative to this one: maps merge by key, all else is replaced, "
+        "`NAME: off` removes, `KEY+:` appends to a list"),
+    key("name", name_of("a robot"), "its name in logs and reports").otherwise("the folder's name"),
+    key("doc", text_of("a text"), "what robot it is, in a line"),
+    key("model", text_of("the path of an MJCF or URDF file"),
+        "bodies, joints and sites, relative to this file")
+        .required(),
+    key("floating_base", text_of("the name of a body"), "the body that is free in space")
+        .required(),
+    key("rate", quantity(kRate, "a rate in Hz"), "of the control tick; whole millihertz")
+        .otherwise("1000 Hz"),
+    key("standing_height", quantity(kLength),
+        "of the floating base's origin above the ground, in `posture`"),
+    key("posture", by_axis(quantity(kNone, "an angle")),
+        "nominal joint angles by joint (globs; exact names first), for checks and starts")
+        .otherwise("0"),
+    key("joints", by_name(map_of(kJointKeys)), "actuated joints, in the order of commands and logs")
+        .required(),
+    key("groups", by_name(list(name_of("a joint"))), "lists of joints by name, with globs"),
+    key("contacts", by_name(map_of(kContactKeys)), "places that can touch the world"),
+    key("points", by_name(map_of(kPointKeys)), "places that tasks can move"),
+    key("sensors", map_of(kSensorsKeys), "what is measured"),
+    key("symmetry", map_of(kSymmetryKeys), "what changes places in a mirror image"),
+    key("limits", map_of(kLimitsKeys), "beyond which something is wrong"),
+    key("faults", by_name(choice(kReactionRows)),
+        "reactions by fault. Without a word: `fall` and `simulator` safe_state, `non_finite` "
+        "safe_stop, the others continue"),
+};
+
+constexpr KeySpec kJointRows[] = {
+    key("position", pair(quantity(kNone, "an angle")), "`[LEAST, GREATEST]`").required(),
+    key("torque", quantity(kTorque), "greatest, both ways").required(),
+    key("sea", map_of(kSeaKeys), "the series-elastic actuator"),
+};
+
+constexpr KeySpec kSeaRows[] = {
+    key("spring", quantity(kTorque, "a stiffness"), "its stiffness, Nm/rad"),
+    key("rotor", quantity(kInertia), "inertia of the motor, seen from the joint"),
+};
+
+constexpr WordSpec kContactTypeRows[] = {
+    {"point", "three forces"},
+    {"surface", "three forces and three moments, in limits"},
+    {"fixed", "held on all sides"},
+};
+
+constexpr KeySpec kContactRows[] = {
+    key("site", text_of("a site's name"), "its place in the model").required(),
+    key("type", choice(kContactTypeRows), "what it can transmit").otherwise("point"),
+    key("group", name_of("a joint group"), "the joints of its leg"),
+    key("radius", quantity(kLength),
+        "of a ball about the site: the contact point is that far along the ground's normal")
+        .otherwise("0 m"),
+};
+
+constexpr KeySpec kPointRows[] = {
+    key("site", text_of("a site's name"), "its place in the model").required(),
+};
+
+constexpr KeySpec kSensorsRows[] = {
+    key("imu", map_of(kImuKeys), "accelerometer and gyroscope"),
+    key("mocap", map_of(kMocapKeys), "markers of a motion capture system"),
+    key("switches", list(name_of("a contact")), "contacts with a switch"),
+};
+
+constexpr KeySpec kImuRows[] = {
+    key("site", text_of("a site's name"), "where it sits").required(),
+};
+
+constexpr KeySpec kMocapRows[] = {
+    key("sites", one_or_list(text_of("a site's name")), "the markers, with globs").required(),
+};
+
+constexpr KeySpec kSymmetryRows[] = {
+    key("swap", pairs(name_of("a contact, group, point or joint")),
+        "pairs that change places: `[[right_foot, left_foot], ...]`")
+        .required(),
+};
+
+constexpr KeySpec kLimitsRows[] = {
+    key("tilt", quantity(kNone, "an angle"), "of the base, beyond which it has fallen")
+        .otherwise("0.8 rad"),
+    key("height", quantity(kNone, "a part"), "of `standing_height`, below which it has fallen")
+        .otherwise("60 %"),
+    key("torque_step", quantity(kTorque), "of a joint's torque between neighbouring ticks")
+        .otherwise("none"),
+};
+
+}  // namespace
+
+constinit const core::KeyTable kRobotKeys = {
+    .id = "robot", .doc = "The root of a robot file.", .keys = kRobotRows};
+constinit const core::KeyTable kJointKeys = {
+    .id = "joint", .doc = "An actuated joint.", .keys = kJointRows};
+constinit const core::KeyTable kSeaKeys = {
+    .id = "sea", .doc = "A series-elastic actuator.", .keys = kSeaRows};
+constinit const core::KeyTable kContactKeys = {
+    .id = "contact", .doc = "A place that can touch the world.", .keys = kContactRows};
+constinit const core::KeyTable kPointKeys = {
+    .id = "point",
+    .doc = "A place that tasks can move. Contacts are points too.",
+    .keys = kPointRows};
+constinit const core::KeyTable kSensorsKeys = {
+    .id = "sensors", .doc = "What is measured.", .keys = kSensorsRows};
+constinit const core::KeyTable kImuKeys = {
+    .id = "imu", .doc = "Accelerometer and gyroscope.", .keys = kImuRows};
+constinit const core::KeyTable kMocapKeys = {
+    .id = "mocap", .doc = "Motion capture.", .keys = kMocapRows};
+constinit const core::KeyTable kSymmetryKeys = {
+    .id = "symmetry", .doc = "What a mirror image exchanges.", .keys = kSymmetryRows};
+constinit const core::KeyTable kLimitsKeys = {
+    .id = "limits", .doc = "Beyond which something is wrong.", .keys = kLimitsRows};
+constinit const std::span<const core::WordSpec> kContactTypes = kContactTypeRows;
+constinit const std::span<const core::WordSpec> kReactions = kReactionRows;
+
+constinit const core::FileTable kRobotFile = {.kind = "robot", .newest = 1, .root = &kRobotKeys};
+
+}  // namespace footfall::model

@@ -1,0 +1,178 @@
+// Keys and words of a world file; see world_keys.h.
+#include "sim/world_keys.h"
+
+namespace footfall::sim {
+namespace {
+
+using namespace core;  // the words in which tables are written
+
+constexpr KeySpec kWorldRows[] = {
+    key("world", integer(1, 1), "the version of world files; the first key").required(),
+    key("base", text_of("the path of a world file"),
+        "a file this one inherits, relative to this one: maps merge by key, all else is replaced, "
+        "`NAME: off` removes, `KEY+:` appends to a list"),
+    key("name", name_of("a world"), "its name in logs and reports").otherwise("the file's name"),
+    key("doc", text_of("a text"), "what is special about it, in a line"),
+    key("ground", map_of(kGroundKeys), "what the robot walks on"),
+    key("surface", map_of(kSurfaceKeys), "the height of the ground that the CoM follows"),
+    key("actuators", map_of(kActuatorsKeys), "what comes between command and joint torque"),
+    key("sensors", map_of(kWorldSensorsKeys), "what sensors add to the truth"),
+    key("control_model", map_of(kControlModelKeys),
+        "what the controller believes, against the truth"),
+    key("constraints", list(name_of("an external aid")), "a boom, a planarizer: none by default"),
+    key("planner_latency", quantity(kTime), "between asking a planner and its answer")
+        .otherwise("2 ms"),
+    key("start", map_of(kStartKeys), "how a run begins"),
+    key("physics", map_of(kPhysicsKeys), "MuJoCo's settings"),
+};
+
+constexpr KeySpec kGroundRows[] = {
+    key("friction", quantity(kNone), "coefficient of sliding friction").otherwise("0.9"),
+    key("terrain", list(map_of(kTerrainKeys)), "pieces that lie on the flat ground"),
+};
+
+constexpr KeySpec kTerrainRows[] = {
+    key("box", map_of(kBoxKeys), "a box on the ground").required(),
+};
+
+constexpr KeySpec kBoxRows[] = {
+    key("at", by_axis(quantity(kLength)), "its centre, x and y in the world").required(),
+    key("size", by_axis(quantity(kLength)), "its edges along x, y, z").required(),
+};
+
+constexpr KeySpec kSurfaceRows[] = {
+    key("ramps", list(map_of(kRampKeys)), "from which the surface is added up").required(),
+};
+
+constexpr KeySpec kRampRows[] = {
+    key("from", quantity(kLength), "x in the world where it begins").required(),
+    key("to", quantity(kLength), "x in the world where it ends").required(),
+    key("rise", quantity(kLength), "by which it rises; negative falls").required(),
+};
+
+constexpr KeySpec kStartRows[] = {
+    key("velocity", quantity(kVelocity),
+        "standard deviation of the base's horizontal velocity at the start, by seed")
+        .otherwise("0 m/s"),
+};
+
+constexpr WordSpec kActuatorModelRows[] = {
+    {"ideal", "the joint torque is the command"},
+    {"series_elastic", "motor, spring and torque loop"},
+};
+
+constexpr KeySpec kActuatorsRows[] = {
+    key("model", choice(kActuatorModelRows), "what the actuators are").otherwise("ideal"),
+    key("command_delay", quantity(kTime), "between command and motor").otherwise("0 s"),
+    key("coulomb", quantity(kTorque), "friction in the joint").otherwise("0 Nm"),
+};
+
+constexpr KeySpec kWorldSensorsRows[] = {
+    key("joint", map_of(kJointSensorKeys), "joint encoders"),
+    key("gyro", map_of(kGyroKeys), "the gyroscope"),
+    key("mocap", map_of(kMocapSensorKeys), "motion capture"),
+    key("switch", map_of(kSwitchKeys), "foot switches"),
+};
+
+constexpr KeySpec kJointSensorRows[] = {
+    key("resolution", quantity(kNone, "an angle"), "step of the encoder").otherwise("0 rad"),
+};
+
+constexpr KeySpec kGyroRows[] = {
+    key("noise", quantity(kRate, "an angular velocity"), "standard deviation").otherwise("0 rad/s"),
+    key("bias", quantity(kRate, "an angular velocity"), "constant offset").otherwise("0 rad/s"),
+};
+
+constexpr KeySpec kMocapSensorRows[] = {
+    key("rate", quantity(kRate, "a rate in Hz"), "how often").otherwise("every tick"),
+    key("delay", quantity(kTime), "from exposure to arrival").otherwise("0 s"),
+    key("noise", quantity(kLength), "standard deviation").otherwise("0 m"),
+    key("occlusion", quantity(kNone, "a part"), "probability of a marker being hidden")
+        .otherwise("0 %"),
+};
+
+constexpr KeySpec kSwitchRows[] = {
+    key("delay", quantity(kTime), "from touch to report").otherwise("0 s"),
+    key("threshold", quantity(kForce), "force that closes it").otherwise("0 N"),
+};
+
+constexpr KeySpec kControlModelRows[] = {
+    key("mass", quantity(kNone, "a change such as \"+5 %\""), "of all bodies, with its sign")
+        .otherwise("0 %"),
+    key("com", by_name(by_axis(quantity(kLength))), "shift of the centre of mass, by body"),
+};
+
+constexpr WordSpec kIntegratorRows[] = {
+    {"euler", "semi-implicit"},
+    {"rk4", "Runge-Kutta of order 4"},
+    {"implicit", "implicit in velocity"},
+};
+constexpr WordSpec kSolverRows[] = {
+    {"newton", "exact second order"},
+    {"cg", "conjugate gradient"},
+    {"pgs", "projected Gauss-Seidel"},
+};
+constexpr WordSpec kConeRows[] = {
+    {"elliptic", "the friction cone itself"},
+    {"pyramidal", "four planes"},
+};
+
+constexpr KeySpec kPhysicsRows[] = {
+    key("timestep_divisor", integer(1, 1000), "physics steps in a control tick").otherwise("2"),
+    key("integrator", choice(kIntegratorRows), "of the equations of motion").otherwise("euler"),
+    key("solver", choice(kSolverRows), "of the contact forces").otherwise("newton"),
+    key("cone", choice(kConeRows), "of friction").otherwise("elliptic"),
+    key("impratio", quantity(kNone), "stiffness of friction against that of the normal")
+        .otherwise("10"),
+    key("iterations", integer(1, 100'000), "of the solver, at most").otherwise("100"),
+    key("tolerance", quantity(kNone), "of the solver").otherwise("1e-8"),
+    key("solref", list(any_quantity()), "`[TIME CONSTANT, DAMPING RATIO]` of contacts")
+        .otherwise("[1 ms, 1]"),
+    key("solimp", list(any_quantity()), "`[IMPEDANCE AT 0, IMPEDANCE AT WIDTH, WIDTH]` of contacts")
+        .otherwise("[0.95, 0.99, 1 mm]"),
+};
+
+}  // namespace
+
+constinit const core::KeyTable kWorldKeys = {
+    .id = "world", .doc = "The root of a world file.", .keys = kWorldRows};
+constinit const core::KeyTable kGroundKeys = {
+    .id = "ground", .doc = "What the robot walks on.", .keys = kGroundRows};
+constinit const core::KeyTable kTerrainKeys = {
+    .id = "terrain", .doc = "A piece of terrain.", .keys = kTerrainRows};
+constinit const core::KeyTable kBoxKeys = {
+    .id = "box", .doc = "A box that lies on the ground.", .keys = kBoxRows};
+constinit const core::KeyTable kSurfaceKeys = {
+    .id = "surface", .doc = "The height of the ground that the CoM follows.", .keys = kSurfaceRows};
+constinit const core::KeyTable kRampKeys = {
+    .id = "ramp", .doc = "A stretch along x over which the surface rises.", .keys = kRampRows};
+constinit const core::KeyTable kStartKeys = {
+    .id = "start", .doc = "How a run begins.", .keys = kStartRows};
+constinit const core::KeyTable kActuatorsKeys = {
+    .id = "actuators",
+    .doc = "What comes between command and joint torque.",
+    .keys = kActuatorsRows};
+constinit const core::KeyTable kWorldSensorsKeys = {
+    .id = "world_sensors", .doc = "What sensors add to the truth.", .keys = kWorldSensorsRows};
+constinit const core::KeyTable kJointSensorKeys = {
+    .id = "joint_sensor", .doc = "Joint encoders.", .keys = kJointSensorRows};
+constinit const core::KeyTable kGyroKeys = {
+    .id = "gyro", .doc = "The gyroscope.", .keys = kGyroRows};
+constinit const core::KeyTable kMocapSensorKeys = {
+    .id = "mocap_sensor", .doc = "Motion capture.", .keys = kMocapSensorRows};
+constinit const core::KeyTable kSwitchKeys = {
+    .id = "switch", .doc = "Foot switches.", .keys = kSwitchRows};
+constinit const core::KeyTable kControlModelKeys = {
+    .id = "control_model",
+    .doc = "What the controller believes, against the truth.",
+    .keys = kControlModelRows};
+constinit const core::KeyTable kPhysicsKeys = {
+    .id = "physics", .doc = "MuJoCo's settings.", .keys = kPhysicsRows};
+constinit const std::span<const core::WordSpec> kActuatorModels = kActuatorModelRows;
+constinit const std::span<const core::WordSpec> kIntegrators = kIntegratorRows;
+constinit const std::span<const core::WordSpec> kSolvers = kSolverRows;
+constinit const std::span<const core::WordSpec> kCones = kConeRows;
+
+constinit const core::FileTable kWorldFile = {.kind = "world", .newest = 1, .root = &kWorldKeys};
+
+}  // namespace footfall::sim

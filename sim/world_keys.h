@@ -1,0 +1,31 @@
+// A `world: 1` file as data: every map with its keys, every list of words. The loader reads its
+// names from here, the JSON Schema and docs/reference.md are printed from here.
+#pragma once
+
+#include "core/key_table.h"
+
+namespace footfall::sim {
+
+extern const core::KeyTable kWorldKeys;  // the root of the file
+extern const core::KeyTable kGroundKeys;
+extern const core::KeyTable kTerrainKeys;
+extern const core::KeyTable kBoxKeys;
+extern const core::KeyTable kSurfaceKeys;
+extern const core::KeyTable kRampKeys;
+extern const core::KeyTable kStartKeys;
+extern const core::KeyTable kActuatorsKeys;
+extern const core::KeyTable kWorldSensorsKeys;
+extern const core::KeyTable kJointSensorKeys;
+extern const core::KeyTable kGyroKeys;
+extern const core::KeyTable kMocapSensorKeys;
+extern const core::KeyTable kSwitchKeys;
+extern const core::KeyTable kControlModelKeys;
+extern const core::KeyTable kPhysicsKeys;
+extern const std::span<const core::WordSpec> kActuatorModels;  // in the order of ActuatorModel
+extern const std::span<const core::WordSpec> kIntegrators;     // in the order of Integrator
+extern const std::span<const core::WordSpec> kSolvers;         // in the order of Solver
+extern const std::span<const core::WordSpec> kCones;           // in the order of Cone
+
+extern const core::FileTable kWorldFile;
+
+}  // namespace footfall::sim

@@ -1,0 +1,63 @@
+// The language as data: complete, and the same as what the loader does.
+#include "behaviors/language.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "behaviors/load_task_types.h"
+#include "model/robot_keys.h"
+
+namespace footfall::behaviors {
+namespace {
+
+TEST(Language, EveryTableAndEveryKeySaysWhatItIsFor) {
+  for (const core::FileTable& file : {kBehaviorFile, model::kRobotFile}) {
+    std::set<std::string_view> ids;
+    for (const core::KeyTable* table : core::tables_of(file)) {
+      EXPECT_TRUE(ids.insert(table->id).second) << table->id << " twice";
+      EXPECT_FALSE(table->doc.empty()) << table->id;
+      for (const core::KeySpec& key : table->keys) {
+        EXPECT_FALSE(key.doc.empty()) << table->id << "." << key.name;
+        EXPECT_NE(key.values[0].kind, core::ValueKind::none) << table->id << "." << key.name;
+        for (const core::ValueSpec& value : key.values) {
+          for (const core::WordSpec& word : value.words) {
+            EXPECT_FALSE(word.doc.empty()) << key.name << ": " << word.word;
+          }
+        }
+      }
+    }
+  }
+}
+TEST(Language, NoMapHasAKeyTwice) {
+  for (const core::KeyTable* table : core::tables_of(kBehaviorFile)) {
+    std::set<std::string> names;
+    for (const std::string& name : core::key_names(*table)) {
+      EXPECT_TRUE(names.insert(name).second) << table->id << "." << name;
+    }
+  }
+}
+TEST(Language, AKeyOfSomeVariantsNamesOnlyWordsOfTheSelector) {
+  for (const core::KeyTable* table : core::tables_of(kBehaviorFile)) {
+    for (const core::KeySpec& key : table->keys) {
+      if (key.variants.empty()) continue;
+      std::size_t count = 1, known = 0;
+      for (const char c : key.variants) count += c == ' ' ? 1 : 0;
+      for (const core::WordSpec& word : table->variants) {
+        known += core::belongs_to(key, word.word) ? 1 : 0;
+      }
+      EXPECT_EQ(known, count) << table->id << "." << key.name << ": " << key.variants;
+    }
+  }
+}
+TEST(Language, EveryTaskTypeOfTheTablesIsOneOfTheLoader) {
+  for (const core::WordSpec& type : kTaskTypes) {
+    const TaskTypeInfo* info = find_task_type(type.word);
+    ASSERT_NE(info, nullptr) << type.word;
+    EXPECT_EQ(core::belongs_to(*core::find_key(kTaskKeys, "joints"), type.word), info->joints);
+    EXPECT_EQ(core::belongs_to(*core::find_key(kTaskKeys, "axes"), type.word), !info->joints);
+  }
+}
+
+}  // namespace
+}  // namespace footfall::behaviors
