@@ -2,9 +2,11 @@
 #include "apps/commands.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 
 namespace footfall::apps {
@@ -42,6 +44,28 @@ std::string find_behavior_file(const std::string& name) {
   return name;
 }
 
+void print_diagnostics(const core::Diagnostics& diagnostics) {
+  std::string text = diagnostics.to_string();
+  if (::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr) {
+    for (const auto& [word, colour] : {std::pair(" error: ", 31), std::pair(" warning: ", 33)}) {
+      const std::string coloured = fmt::format(
+          " \033[1;{}m{}\033[0m ", colour, std::string_view(word).substr(1, std::strlen(word) - 2));
+      // The first of each line: what follows may quote the file.
+      for (std::size_t line = 0; line < text.size();) {
+        const std::size_t end = std::min(text.find('\n', line), text.size());
+        const std::size_t at = text.find(word, line);
+        if (at < end) {
+          text.replace(at, std::strlen(word), coloured);
+          line = text.find('\n', at) + 1;
+        } else {
+          line = end + 1;
+        }
+      }
+    }
+  }
+  std::fputs(text.c_str(), stderr);
+}
+
 std::vector<std::pair<std::string, std::string>> split_settings(const std::vector<std::string>& set,
                                                                 core::Diagnostics& diagnostics) {
   std::vector<std::pair<std::string, std::string>> pairs;
@@ -69,7 +93,7 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
   if (!diagnostics.has_errors()) {
     behavior = behaviors::load_behavior(find_behavior_file(path), options, diagnostics);
   }
-  std::fputs(diagnostics.to_string().c_str(), stderr);
+  print_diagnostics(diagnostics);
   return diagnostics.has_errors() ? nullptr : std::move(behavior);
 }
 

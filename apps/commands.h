@@ -24,6 +24,7 @@ void add_run_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_trace_command(CLI::App& app, int& exit_code);
 void add_signals_command(CLI::App& app, int& exit_code);
+void add_graph_command(CLI::App& app, int& exit_code);
 
 // Folders that hold robots/, behaviors/library/ and sim/worlds/: the working folder, those of
 // FOOTFALL_PATH (colons between), the source tree, the installed data.
@@ -37,6 +38,9 @@ std::string find_behavior_file(const std::string& name);
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
                                                      const std::string& robot,
                                                      const std::vector<std::string>& set);
+
+// Every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is set).
+void print_diagnostics(const core::Diagnostics& diagnostics);
 
 // Splits NAME=VALUE texts; a text without `=` is reported as an error.
 std::vector<std::pair<std::string, std::string>> split_settings(const std::vector<std::string>& set,

@@ -32,7 +32,8 @@ struct StateSource {
   core::YamlNode keys;  // a map, without `states`, `use`, `mirror` and `with`
   Arguments arguments;  // in force where it is written; a stack's `$names` are looked up here
   std::vector<StateSource> children;
-  int index = -1;  // into Behavior::states
+  int index = -1;      // into Behavior::states
+  std::string origin;  // template and arguments it was made from, for people; empty: none
 };
 
 // One named gain table entry, or the gains written in a task: slots are made at first use.
@@ -112,6 +113,9 @@ struct LoadContext {
 
 // Arguments put into a tree: whole scalars, keys, parts of dotted names and of expressions.
 core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments);
+
+// All steps from a file's tree to `context.behavior`; false after errors.
+bool compile_behavior(LoadContext& context, core::YamlNode root, const std::string& path);
 
 // The loader's steps, in their order.
 void apply_overrides(LoadContext& context);      // load_overrides.cc

@@ -114,6 +114,15 @@ std::optional<Arguments> read_arguments(LoadContext& context, const core::YamlNo
 StateSource expand(LoadContext& context, const std::string& name, core::Mark mark,
                    core::YamlNode keys, Arguments arguments, int depth);
 
+// `stride(stance: right_foot, swing: left_foot)`.
+std::string instance_text(const core::YamlNode& name, const Arguments& arguments) {
+  std::vector<std::string> parts;
+  for (const auto& [key, value] : arguments) {
+    parts.push_back(fmt::format("{}: {}", key, value.is_scalar() ? value.scalar : "..."));
+  }
+  return fmt::format("{}({})", name.scalar, fmt::join(parts, ", "));
+}
+
 // An instance of a template, `over` over its keys.
 StateSource instantiate(LoadContext& context, const std::string& name, core::Mark mark,
                         const core::YamlNode& body, Arguments arguments, const char* side,
@@ -168,10 +177,13 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
     return;
   }
   const core::YamlNode none = map_node(name.mark);
+  const std::size_t written = state.children.size();
   state.children.push_back(
       instantiate(context, first, name.mark, *body, *arguments, "1", none, state.arguments, depth));
   state.children.push_back(
       instantiate(context, second, name.mark, *body, image, "-1", none, state.arguments, depth));
+  state.children[written].origin = instance_text(name, *arguments);
+  state.children[written + 1].origin = "mirror image: " + instance_text(name, image);
   core::YamlNode list = map_node(name.mark);
   list.kind = core::YamlNode::Kind::sequence;
   const auto found = std::find_if(state.keys.entries.begin(), state.keys.entries.end(),
@@ -214,7 +226,7 @@ void expand_children(LoadContext& context, StateSource& state, const core::YamlN
 
 StateSource expand(LoadContext& context, const std::string& name, core::Mark mark,
                    core::YamlNode keys, Arguments arguments, int depth) {
-  StateSource state{name, mark, std::move(keys), std::move(arguments), {}, -1};
+  StateSource state{name, mark, std::move(keys), std::move(arguments), {}, -1, {}};
   if (state.keys.is_null()) state.keys = map_node(mark);
   if (!core::expect_map(state.keys, "a state", context.diagnostics)) {
     state.keys = map_node(mark);
@@ -240,7 +252,10 @@ StateSource expand(LoadContext& context, const std::string& name, core::Mark mar
     const core::YamlNode* body = find_template(context, use);
     const auto own = body == nullptr ? std::nullopt : read_arguments(context, *body, given, use);
     if (!own) return state;
-    return instantiate(context, name, mark, *body, *own, "1", state.keys, state.arguments, depth);
+    StateSource made =
+        instantiate(context, name, mark, *body, *own, "1", state.keys, state.arguments, depth);
+    made.origin = instance_text(use, *own);
+    return made;
   } else if (given != nullptr && mirror.is_null()) {
     context.error(with.mark, "unknown-key", "'with' needs 'use' or 'mirror' beside it");
   }

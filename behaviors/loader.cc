@@ -70,20 +70,24 @@ void load_contents(LoadContext& context) {
 std::unique_ptr<Behavior> load(core::YamlNode root, const std::string& path,
                                const LoadOptions& options, core::Diagnostics& diagnostics) {
   auto behavior = std::make_unique<Behavior>();
-  behavior->path = path;
-  behavior->name = std::filesystem::path(path).stem().string();
-  if (root.is_null() && diagnostics.has_errors()) return nullptr;
-  const int before = diagnostics.error_count();
   LoadContext context(*behavior, options, diagnostics);
-  context.root = std::move(root);
-  if (const auto* name = context.section("name"); name != nullptr && name->is_scalar()) {
-    behavior->name = name->scalar;
-  }
-  if (load_structure(context, path)) load_contents(context);
-  return diagnostics.error_count() == before ? std::move(behavior) : nullptr;
+  return compile_behavior(context, std::move(root), path) ? std::move(behavior) : nullptr;
 }
 
 }  // namespace
+
+bool compile_behavior(LoadContext& context, core::YamlNode root, const std::string& path) {
+  context.behavior.path = path;
+  context.behavior.name = std::filesystem::path(path).stem().string();
+  if (root.is_null() && context.diagnostics.has_errors()) return false;
+  const int before = context.diagnostics.error_count();
+  context.root = std::move(root);
+  if (const auto* name = context.section("name"); name != nullptr && name->is_scalar()) {
+    context.behavior.name = name->scalar;
+  }
+  if (load_structure(context, path)) load_contents(context);
+  return context.diagnostics.error_count() == before;
+}
 
 std::unique_ptr<Behavior> load_behavior(const std::string& path, const LoadOptions& options,
                                         core::Diagnostics& diagnostics) {

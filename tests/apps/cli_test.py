@@ -2,12 +2,14 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import xml.dom.minidom
 
 BINARY, SOURCE = map(os.path.abspath, sys.argv[1:3])
 
@@ -286,6 +288,44 @@ class Check(Case):
         self.refused(self.footfall("check", "no.yaml"), 2, "no.yaml")
 
 
+class Graph(Case):
+    def graph(self, *arguments, **environment):
+        return subprocess.run([BINARY, "graph", *arguments], capture_output=True, text=True, timeout=100,
+                              cwd=self.folder, env={**os.environ, **environment})
+
+    def test_formats_by_ending_and_by_option(self):
+        path = self.write("c.yaml", CHART)
+        for name, begin in (("c.dot", 'digraph "c"'), ("c.mmd", "---\ntitle")):
+            result = self.graph(path, "-o", name)
+            self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+            self.assertTrue((self.folder / name).read_text().startswith(begin))
+        self.assertEqual(self.graph(path, "--format", "dot").stdout, (self.folder / "c.dot").read_text())
+
+    @unittest.skipUnless(shutil.which("dot"), "Graphviz is not installed")
+    def test_the_library_as_svg(self):
+        for name in ("balance", "balance_best", "balance_paper"):
+            result = self.graph(name, "-o", "p.svg")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            picture = xml.dom.minidom.parse(str(self.folder / "p.svg"))
+            texts = [t.firstChild.data for t in picture.getElementsByTagName("text")]
+            for state in ("limp", "step", "right_foot", "left_foot", "lift", "land", "down"):
+                self.assertIn(state, texts)
+
+    def test_without_graphviz_there_is_a_message_and_dot_still_works(self):
+        path = self.write("c.yaml", CHART)
+        result = self.graph(path, "-o", "p.svg", PATH=str(self.folder))
+        self.refused(result, 3, "graphviz", "mermaid")
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["c.yaml"])
+        self.assertEqual(self.graph(path, "-o", "p.dot", PATH=str(self.folder)).returncode, 0)
+
+    def test_bad_input(self):
+        path = self.write("c.yaml", CHART)
+        self.refused(self.graph(path, "-o", "p.png"), 2, "p.png")
+        self.refused(self.graph("no.yaml"), 2, "no.yaml")
+        self.refused(self.graph(path, "--expand", "aa", "--format", "dot"), 2, "--expand", "aa")
+        self.refused(self.graph(path, "-o", "no/such/p.dot"), 3, "no/such/p.dot")
+
+
 class Help(Case):
     def test_version(self):
         result = self.footfall("--version")
@@ -297,7 +337,7 @@ class Help(Case):
         self.assertEqual(top.returncode, 0)
         commands = [line.split()[0] for line in top.stdout.split("Subcommands:")[1].splitlines()
                     if line.strip()]
-        self.assertLessEqual({"run", "check", "trace", "signals", "report"}, set(commands))
+        self.assertLessEqual({"run", "check", "trace", "signals", "report", "graph"}, set(commands))
         for command in commands:
             with self.subTest(command):
                 result = self.footfall(command, "--help")
