@@ -34,7 +34,9 @@ void load_raise(LoadContext& context, const core::YamlNode& node) {
 
 void set_component(LoadContext& context, const ParameterInfo& info, int component,
                    const core::YamlNode& node, const ValueScope& scope) {
-  const int expression = context.compile_value(node, info.dimension, scope);
+  // A parameter written without a unit takes any: `goal: [0, 0]` is set to `[30 cm, 0 cm]`.
+  const auto dimension = info.bare ? std::nullopt : std::optional(info.dimension);
+  const int expression = context.compile_value(node, dimension, scope);
   const auto value = context.constant_value(expression);
   if (value && info.has_range() && (*value < info.min || *value > info.max)) {
     context.error(node.mark, "out-of-range",

@@ -39,10 +39,10 @@ int LoadContext::compile(const core::YamlNode& node, std::string_view text, std:
   return -1;
 }
 
-int LoadContext::compile_value(const core::YamlNode& node, core::Dimension expected,
+int LoadContext::compile_value(const core::YamlNode& node, std::optional<core::Dimension> expected,
                                const ValueScope& scope) {
   if (!node.is_scalar() || node.scalar.empty()) {
-    core::report_expected(node, core::dimension_name(expected), diagnostics);
+    core::report_expected(node, expected ? core::dimension_name(*expected) : "a value", diagnostics);
     return -1;
   }
   if (core::is_expression(node)) {
@@ -52,8 +52,12 @@ int LoadContext::compile_value(const core::YamlNode& node, core::Dimension expec
   const bool name = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');
   const bool plain = node.scalar.find_first_of(" +-*/^()?:,<>=") == std::string::npos;
   if (first == '$' || (name && plain)) return compile(node, node.scalar, 0, expected, scope);
-  const auto value = core::read_quantity(node, expected, diagnostics);
-  return value ? behavior.expressions.add_constant(*value, expected) : -1;
+  if (!expected) {
+    const auto any = core::read_any_quantity(node, diagnostics);
+    return any ? behavior.expressions.add_constant(any->value, any->dimension) : -1;
+  }
+  const auto value = core::read_quantity(node, *expected, diagnostics);
+  return value ? behavior.expressions.add_constant(*value, *expected) : -1;
 }
 
 int LoadContext::compile_condition(const core::YamlNode& node, const ValueScope& scope) {

@@ -90,8 +90,10 @@ struct LoadContext {
   // Expression text as an index into the pool, -1 and an error at the exact column otherwise.
   int compile(const core::YamlNode& node, std::string_view text, std::size_t offset,
               std::optional<core::Dimension> expected, const ValueScope& scope);
-  // A scalar value: a quantity, `$parameter`, `= expression`, or a lone signal name.
-  int compile_value(const core::YamlNode& node, core::Dimension expected, const ValueScope& scope);
+  // A scalar value: a quantity, `$parameter`, `= expression`, or a lone signal name; of any dimension
+  // without `expected`.
+  int compile_value(const core::YamlNode& node, std::optional<core::Dimension> expected,
+                    const ValueScope& scope);
   // A `when:`, where the `=` is implied.
   int compile_condition(const core::YamlNode& node, const ValueScope& scope);
   // The value if the expression is constant.

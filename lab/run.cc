@@ -60,8 +60,13 @@ class Run {
     if (spec_.status && loop_.ticks() % 256 == 0) show_status();
   }
 
+  // What the run was told moves the goal; without that it is the behavior's own, which may change.
   void move_goal() {
-    if (!has_goal(loop_.behavior()) || (!spec_.goal && !spec_.goal_velocity)) return;
+    if (!has_goal(loop_.behavior())) return;
+    if (!spec_.goal && !spec_.goal_velocity) {
+      goal_ = current_goal();
+      return;
+    }
     if (spec_.goal_velocity) {
       for (std::size_t k = 0; k < 2; ++k) {
         goal_[k] = start_goal_[k] + (*spec_.goal_velocity)[k] * loop_.time();

@@ -283,4 +283,16 @@ TEST(Loader, AStateNamedLikeABooleanIsRefused) {
 }
 
 }  // namespace
+
+TEST(Loader, AParameterWithoutAUnitIsSetToAValueWithOne) {
+  Runner run(load(chart(R"(
+  on_entry: [{set: {goal: [30 cm, 0 m]}}]
+  states: {a: {transitions: [{when: $goal.x == 0.3 m, to: there}]}, there: {type: final}}
+parameters: {goal: [0, 0]}
+)")));
+  run.start();
+  run.tick();
+  EXPECT_EQ(run.active(), "there");
+}
+
 }  // namespace footfall::tests
