@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -197,6 +198,12 @@ int run_behavior(const RunOptions& options) {
   engine::LoopSettings settings;
   settings.deviation = {world.control_model.mass_scale, world.control_model.com_shift};
   settings.planner_latency = world.planner_latency;
+  settings.lockstep = !options.realtime;
+  settings.seed = options.seed;
+  const auto allows = [&](const char* what) {
+    return std::find(options.allow.begin(), options.allow.end(), what) != options.allow.end();
+  };
+  settings.script_access = {allows("files"), allows("processes")};
   engine::ControlLoop loop(*behavior, *backend.hardware, settings);
 
   lab::RunSpec spec = make_spec(options);

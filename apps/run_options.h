@@ -32,6 +32,7 @@ struct RunOptions {
   bool json = false;
   bool quiet = false;
   bool realtime = false;
+  std::vector<std::string> allow;  // what scripts may reach: files, processes
 };
 
 void add_run_options(CLI::App& command, RunOptions& options);

@@ -26,6 +26,12 @@ struct TaskInstance {
   int signals = 0;  // index into SignalLayout::task: tasks of one name share their signals
 };
 
+// A file of Lua, as it was read at load: a run works with this text.
+struct ScriptFile {
+  std::string path;
+  std::string text;
+};
+
 struct PlannerInfo {
   std::string name;
   FootPlannerSpec spec;
@@ -61,6 +67,8 @@ struct Behavior : Chart {
   std::vector<TaskName> task_names;  // index: TaskInstance::signals
   std::vector<PlannerInfo> planners;
   std::vector<InvokeInfo> invokes;
+  std::vector<ScriptFile> scripts;
+  std::int64_t script_instructions = 0;  // of one call; 0: the usual bound
 
   int step = -1;                                      // index of the mark `step`, -1: it marks none
   std::vector<int> touchdown_events, liftoff_events;  // by contact

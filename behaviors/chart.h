@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,11 +67,34 @@ struct TransitionInfo {
   std::string reason;
 };
 
-enum class ActionKind : std::uint8_t { raise, set, log, mark };
+enum class ActionKind : std::uint8_t { raise, set, log, mark, call };
+
+// What a registered C++ function may touch in the tick: it reads signals and reads and writes
+// parameters. It must be realtime-safe. False raises error.execution and skips the rest of the
+// list.
+struct NativeCall {
+  const double* signals = nullptr;
+  std::span<double> parameters;
+  double time = 0.0;  // s
+};
+using NativeFunction = bool (*)(NativeCall& call) noexcept;
+
+// A function that `call:` names: in C++, run at once; without it one of a script, run outside of
+// the tick.
+struct CallInfo {
+  std::string name;
+  NativeFunction native = nullptr;
+};
+
+// What a tick asks of the scripts: to call a function, or to handle an event.
+struct ScriptRequest {
+  bool is_event = false;
+  int index = 0;  // into Chart::events or Chart::calls
+};
 
 struct ActionInfo {
   ActionKind kind = ActionKind::raise;
-  int index = 0;        // event, parameter's slot, text or mark
+  int index = 0;        // event, parameter's slot, text, mark or call
   int expression = -1;  // of `set`
   double min = 0.0;     // of `set`: range, equal: none
   double max = 0.0;
@@ -94,11 +118,13 @@ struct Chart {
   std::vector<ActionInfo> actions;
   std::vector<LogText> logs;
   std::vector<std::string> marks;
+  std::vector<CallInfo> calls;
   std::vector<std::string> events;
   // Which events enable which transition: bit e of row t; event_words 64-bit words a row.
   std::vector<std::uint64_t> event_match;
   int event_words = 0;
-  int safe_transition = -1;  // to the root's `safe` state, -1: none
+  std::vector<std::uint8_t> script_events;  // by event: a script handles it; empty: none
+  int safe_transition = -1;                 // to the root's `safe` state, -1: none
   int history_count = 0;
   int error_execution = -1;  // event id
   int event_overflow = -1;   // event id

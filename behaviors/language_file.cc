@@ -29,7 +29,18 @@ constexpr KeySpec kBehaviorRows[] = {
     key("stacks", by_name(map_of(kStackKeys)), "contacts, tasks and internal forces under a name"),
     key("templates", by_name(map_of(kTemplateKeys)),
         "states with arguments, for `use` and `mirror`"),
+    key("scripts", one_or_list(text_of("the path of a Lua file")), map_of(kScriptsKeys),
+        "Lua files beside this one: functions that `call:` runs, and handlers of events"),
     key("machine", map_of(kMachineKeys), "the root state, always active").required(),
+};
+
+constexpr KeySpec kScriptsRows[] = {
+    key("files", one_or_list(text_of("the path of a Lua file")), "Lua files beside this one")
+        .required(),
+    key("instructions", integer(1000, 1'000'000'000'000),
+        "of the virtual machine that one call may take")
+        .otherwise("10000000"),
+    key("doc", text_of("a text"), "what they are for, in a line"),
 };
 
 constexpr KeySpec kParameterRows[] = {
@@ -133,6 +144,10 @@ constexpr KeySpec kStackRows[] = {
 
 constinit const core::KeyTable kBehaviorKeys = {
     .id = "behavior", .doc = "The root of a behavior file.", .keys = kBehaviorRows};
+constinit const core::KeyTable kScriptsKeys = {
+    .id = "scripts",
+    .doc = "Scripts in Lua, run beside the control loop and never in it.",
+    .keys = kScriptsRows};
 constinit const core::KeyTable kParameterKeys = {
     .id = "parameter",
     .doc =

@@ -117,6 +117,31 @@ void load_mark(LoadContext& context, const core::YamlNode& node) {
   add(context, {ActionKind::mark, mark, -1, 0.0, 0.0});
 }
 
+// A registered C++ function, or one of a script.
+void load_call(LoadContext& context, const core::YamlNode& node) {
+  const auto name = core::read_text(node, context.diagnostics, "the name of a function");
+  if (!name) return;
+  CallInfo info{*name, nullptr};
+  std::vector<std::string> known = context.script_functions;
+  for (const NativeFunctionInfo& native : context.options.functions) {
+    known.push_back(native.name);
+    if (native.name == *name) info.native = native.function;
+  }
+  if (std::find(known.begin(), known.end(), *name) == known.end()) {
+    context.error(node.mark, "unknown-function",
+                  fmt::format("unknown function '{}': no file of `scripts` defines it, and the "
+                              "program registers none of this name{}",
+                              *name, core::did_you_mean(*name, known)));
+    return;
+  }
+  auto& calls = context.behavior.calls;
+  const auto same = [&](const CallInfo& other) { return other.name == *name; };
+  const auto found = std::find_if(calls.begin(), calls.end(), same);
+  const int index = static_cast<int>(found - calls.begin());
+  if (found == calls.end()) calls.push_back(info);
+  add(context, {ActionKind::call, index, -1, 0.0, 0.0});
+}
+
 void load_action(LoadContext& context, const core::YamlNode& node, const ValueScope& scope) {
   if (!core::expect_map(node, "an action such as {mark: NAME}", context.diagnostics)) return;
   core::check_keys(node, kActionKeys, context.diagnostics);
@@ -125,9 +150,7 @@ void load_action(LoadContext& context, const core::YamlNode& node, const ValueSc
     if (entry.key == "set") load_set(context, entry.value, scope);
     if (entry.key == "log") load_log(context, entry.value, scope);
     if (entry.key == "mark") load_mark(context, entry.value);
-    if (entry.key == "call") {
-      context.error(entry.key_mark, "not-available", "'call' is not available in this version");
-    }
+    if (entry.key == "call") load_call(context, entry.value);
   }
 }
 

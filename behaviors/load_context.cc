@@ -42,7 +42,8 @@ int LoadContext::compile(const core::YamlNode& node, std::string_view text, std:
 int LoadContext::compile_value(const core::YamlNode& node, std::optional<core::Dimension> expected,
                                const ValueScope& scope) {
   if (!node.is_scalar() || node.scalar.empty()) {
-    core::report_expected(node, expected ? core::dimension_name(*expected) : "a value", diagnostics);
+    core::report_expected(node, expected ? core::dimension_name(*expected) : "a value",
+                          diagnostics);
     return -1;
   }
   if (core::is_expression(node)) {

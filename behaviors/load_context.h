@@ -78,6 +78,8 @@ struct LoadContext {
   std::vector<std::string> used_templates, used_stacks;
   std::vector<std::string> raised_events, declared_events;
   std::vector<EventPattern> patterns;
+  std::vector<std::string> script_functions;  // that `call:` may name
+  std::vector<std::string> script_patterns;   // of footfall.on
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::vector<std::string_view> task_type_of_name;  // by Behavior::task_names
   int expanded_states = 0;
@@ -90,8 +92,8 @@ struct LoadContext {
   // Expression text as an index into the pool, -1 and an error at the exact column otherwise.
   int compile(const core::YamlNode& node, std::string_view text, std::size_t offset,
               std::optional<core::Dimension> expected, const ValueScope& scope);
-  // A scalar value: a quantity, `$parameter`, `= expression`, or a lone signal name; of any dimension
-  // without `expected`.
+  // A scalar value: a quantity, `$parameter`, `= expression`, or a lone signal name; of any
+  // dimension without `expected`.
   int compile_value(const core::YamlNode& node, std::optional<core::Dimension> expected,
                     const ValueScope& scope);
   // A `when:`, where the `=` is implied.
@@ -126,6 +128,7 @@ void expand_machine(LoadContext& context);       // load_template.cc
 void check_machine_names(LoadContext& context);  // load_template.cc
 void load_states(LoadContext& context);          // load_machine.cc
 void load_events(LoadContext& context);          // load_events.cc
+void load_scripts(LoadContext& context);         // load_scripts.cc
 void load_planners(LoadContext& context);        // load_planners.cc
 void load_signals(LoadContext& context);         // load_signals.cc
 void load_gains(LoadContext& context);           // load_gains.cc

@@ -111,6 +111,14 @@ void finish_events(LoadContext& context) {
   behavior.event_words = (count + 63) / 64;
   behavior.event_match.assign(
       behavior.transitions.size() * static_cast<std::size_t>(behavior.event_words), 0);
+  if (!context.script_patterns.empty()) {
+    behavior.script_events.assign(static_cast<std::size_t>(count), 0);
+    for (std::size_t e = 0; e < behavior.events.size(); ++e) {
+      for (const std::string& pattern : context.script_patterns) {
+        if (Chart::event_matches(pattern, behavior.events[e])) behavior.script_events[e] = 1;
+      }
+    }
+  }
   for (const EventPattern& pattern : context.patterns) {
     const bool exact = !pattern.text.ends_with("*");
     const bool changed = pattern.text.starts_with(kChanged) &&

@@ -58,6 +58,7 @@ bool load_structure(LoadContext& context, const std::string& path) {
 void load_contents(LoadContext& context) {
   load_planners(context);
   load_events(context);
+  load_scripts(context);
   load_signals(context);
   load_gains(context);
   load_torque_loops(context);

@@ -12,9 +12,16 @@
 
 namespace footfall::behaviors {
 
+// A C++ function that behaviors may `call:`.
+struct NativeFunctionInfo {
+  std::string name;
+  NativeFunction function = nullptr;
+};
+
 struct LoadOptions {
-  std::vector<std::string> search;  // folders holding robots/NAME/robot.yaml
-  std::string robot;                // overrides the file's `robot:` if not empty
+  std::vector<std::string> search;            // folders holding robots/NAME/robot.yaml
+  std::string robot;                          // overrides the file's `robot:` if not empty
+  std::vector<NativeFunctionInfo> functions;  // registered by the program
   std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, texts as in YAML
 };
 

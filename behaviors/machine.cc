@@ -148,6 +148,10 @@ std::span<const int> Machine::transitions_taken() const noexcept {
   return impl_->statechart.transitions_taken();
 }
 std::span<const LogRecord> Machine::logs() const noexcept { return impl_->statechart.logs(); }
+std::span<const ScriptRequest> Machine::script_requests() const noexcept {
+  return impl_->statechart.script_requests();
+}
+bool Machine::is_active(int state) const noexcept { return impl_->statechart.is_active(state); }
 const core::FaultCounters& Machine::faults() const noexcept { return impl_->statechart.faults(); }
 
 }  // namespace footfall::behaviors

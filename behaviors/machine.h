@@ -85,6 +85,9 @@ class Machine {
   std::span<const int> transitions_taken() const noexcept;
   // Texts logged in this tick; their pieces and fields are in Behavior::logs.
   std::span<const LogRecord> logs() const noexcept;
+  // What this tick asks of the scripts, in order (indices into Behavior::calls and events).
+  std::span<const ScriptRequest> script_requests() const noexcept;
+  bool is_active(int state) const noexcept;
   const core::FaultCounters& faults() const noexcept;
 
  private:

@@ -46,6 +46,7 @@ Statechart::Statechart(const Chart& chart, const double* signals, std::span<doub
   marks_.reserve(kRecordCapacity);
   taken_.reserve(kRecordCapacity);
   logs_.reserve(kRecordCapacity);
+  script_requests_.reserve(kRecordCapacity);
   context_.signals = signals;
   context_.parameters = parameters.data();
   context_.entry_ticks = entry_ticks_.data();
@@ -65,6 +66,7 @@ void Statechart::begin_tick(std::int64_t tick) noexcept {
   if (!recorded_start_) {
     marks_.clear();
     logs_.clear();
+    script_requests_.clear();
   }
   recorded_start_ = false;
   taken_.clear();
@@ -113,17 +115,29 @@ void Statechart::run() noexcept {
     }
     select(-1);
     if (selected_.empty() && !internal_.empty()) {
-      select(internal_.pop());
+      select(take_event(internal_));
       if (selected_.empty()) continue;
     }
     if (selected_.empty()) {
       if (external_.empty()) return;
-      select(external_.pop());
+      select(take_event(external_));
       if (selected_.empty()) continue;
     }
     micro_step();
     ++steps_;
   }
+}
+
+// The next event of a queue; scripts that handle it are asked to.
+int Statechart::take_event(EventQueue& queue) noexcept {
+  const int event = queue.pop();
+  if (chart_.script_events.empty() || chart_.script_events[idx(event)] == 0) return event;
+  if (script_requests_.size() < kRecordCapacity) {
+    script_requests_.push_back({true, event});
+  } else {
+    faults_.add(core::Fault::event_overflow);
+  }
+  return event;
 }
 
 // SCXML's microstep: exit all, then the transitions' actions, then enter all.
@@ -290,7 +304,21 @@ bool Statechart::run_action(const ActionInfo& action) noexcept {
       logs_.push_back(record);
       return true;
     }
+    case ActionKind::call:
+      return call(action.index);
   }
+  return true;
+}
+
+bool Statechart::call(int index) noexcept {
+  const CallInfo& info = chart_.calls[idx(index)];
+  if (info.native != nullptr) {
+    NativeCall native{context_.signals, parameters_,
+                      static_cast<double>(context_.tick) * context_.period};
+    return info.native(native);
+  }
+  if (script_requests_.size() == kRecordCapacity) return false;
+  script_requests_.push_back({false, index});
   return true;
 }
 

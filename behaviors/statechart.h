@@ -63,6 +63,8 @@ class Statechart {
   std::span<const int> marks() const noexcept { return marks_; }
   std::span<const int> transitions_taken() const noexcept { return taken_; }
   std::span<const LogRecord> logs() const noexcept { return logs_; }
+  // What this tick asks of the scripts, in order.
+  std::span<const ScriptRequest> script_requests() const noexcept { return script_requests_; }
   const core::FaultCounters& faults() const noexcept { return faults_; }
   void count_fault(core::Fault fault) noexcept { faults_.add(fault); }
   // error.execution, as an internal event of the next tick.
@@ -92,6 +94,8 @@ class Statechart {
   void refresh_lists() noexcept;
   void run_actions(Range actions) noexcept;
   bool run_action(const ActionInfo& action) noexcept;
+  bool call(int index) noexcept;
+  int take_event(EventQueue& queue) noexcept;
   void raise_internal(int event) noexcept;
   void execution_error() noexcept;
 
@@ -119,6 +123,7 @@ class Statechart {
   EventQueue internal_, external_;
   std::vector<int> marks_, taken_;
   std::vector<LogRecord> logs_;
+  std::vector<ScriptRequest> script_requests_;
   core::FaultCounters faults_;
   int control_ = 0;
   int steps_ = 0;  // micro steps of this tick

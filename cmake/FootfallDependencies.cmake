@@ -14,6 +14,7 @@ find_package(nlohmann_json REQUIRED)          # nlohmann_json::nlohmann_json
 find_package(CLI11 REQUIRED)                  # CLI11::CLI11
 
 include(FootfallZstd)                         # footfall_zstd
+include(FootfallLua)                          # footfall_lua
 
 find_library(EGL_LIBRARY EGL REQUIRED)
 find_path(STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)

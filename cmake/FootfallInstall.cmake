@@ -17,5 +17,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/footfallConfig.cmake.i
   PATH_VARS FOOTFALL_DATA_DIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/footfallConfig.cmake ${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake
-  ${PROJECT_SOURCE_DIR}/cmake/FootfallZstd.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FootfallZstd.cmake ${PROJECT_SOURCE_DIR}/cmake/FootfallLua.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)

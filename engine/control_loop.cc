@@ -49,6 +49,16 @@ int latency_ticks(double latency, double period) {
   return static_cast<int>(std::ceil(latency / period - 1e-9));
 }
 
+std::unique_ptr<ScriptLink> make_scripts(const behaviors::Behavior& behavior,
+                                         const LoopSettings& settings) {
+  if (behavior.scripts.empty()) return nullptr;
+  behaviors::ScriptSettings script;
+  script.access = settings.script_access;
+  script.seed = settings.seed;
+  if (behavior.script_instructions > 0) script.instructions = behavior.script_instructions;
+  return std::make_unique<ScriptLink>(behavior, script);
+}
+
 }  // namespace
 
 tasks::ControllerSizes controller_sizes(const behaviors::Behavior& behavior) {
@@ -77,6 +87,8 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       controller_(model_, torque_limits(behavior.robot), controller_sizes(behavior), period_),
       estimator_(behavior.robot.joint_count()),
       planners_(behavior, model_, latency_ticks(settings.planner_latency, period_)),
+      scripts_(make_scripts(behavior, settings)),
+      lockstep_(settings.lockstep),
       safety_(behavior.robot),
       measure_(model_),
       axis_column_(axis_columns(behavior)) {}
@@ -101,6 +113,7 @@ LoopState ControlLoop::tick() noexcept {
 }
 
 bool ControlLoop::sense() noexcept {
+  if (scripts_ && lockstep_) scripts_->wait();
   const bool fresh = hardware_.read(sensors_);
   if (!fresh) faults_.add(core::Fault::sensor_stale);
   return fresh;
@@ -112,9 +125,13 @@ void ControlLoop::compute() noexcept {
   write_measured_signals();
   handle(safety_.check_state(sensors_, model_));
   planners_.deliver(tick_, *machine_);
+  if (scripts_) scripts_->deliver(*machine_);
   machine_->tick(tick_, measure_);
   observe_support();
   planners_.take(tick_, *machine_);
+  if (scripts_ && !scripts_->post(*machine_, signals_.values(), time())) {
+    faults_.add(core::Fault::event_overflow);
+  }
   controller_.compute(machine_->control(), tick_, sensors_.tau.data());
   std::copy_n(controller_.result().tau.begin(), model_.joint_count(), commands_.tau.begin());
   handle(safety_.filter(commands_));

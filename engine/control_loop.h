@@ -14,6 +14,7 @@
 #include "engine/estimator.h"
 #include "engine/planner_link.h"
 #include "engine/safety.h"
+#include "engine/script_link.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "tasks/whole_body_controller.h"
@@ -23,6 +24,9 @@ namespace footfall::engine {
 struct LoopSettings {
   model::ModelDeviation deviation;  // of the control model from the robot file
   double planner_latency = 2e-3;    // s, lock-step
+  bool lockstep = true;             // the caller's clock waits for what other threads compute
+  behaviors::ScriptAccess script_access;
+  std::uint64_t seed = 0;  // of the scripts' random numbers
 };
 
 enum class LoopState : std::uint8_t {
@@ -64,6 +68,7 @@ class ControlLoop {
   const hal::Sensors& sensors() const noexcept { return sensors_; }
   const hal::Commands& commands() const noexcept { return commands_; }
   const core::FaultCounters& faults() const noexcept { return faults_; }
+  ScriptLink* scripts() noexcept { return scripts_.get(); }  // nullptr: the behavior has none
 
   // Ends the run: the machine's safe state, then the hardware's safe stop.
   void safe_stop() noexcept;
@@ -95,6 +100,8 @@ class ControlLoop {
   tasks::WholeBodyController controller_;
   TrueStateEstimator estimator_;
   PlannerLink planners_;
+  std::unique_ptr<ScriptLink> scripts_;
+  bool lockstep_;
   SafetyFilter safety_;
   LoopMeasure measure_;
   hal::Sensors sensors_;

@@ -24,7 +24,7 @@ std::string names_of(const behaviors::Chart& chart, const behaviors::Range& targ
 
 }  // namespace
 
-RunLog::RunLog(const engine::ControlLoop& loop, engine::LogWriter* log, int every)
+RunLog::RunLog(engine::ControlLoop& loop, engine::LogWriter* log, int every)
     : loop_(loop),
       log_(log),
       every_(std::max(1, every)),
@@ -50,6 +50,7 @@ void RunLog::after_tick(const StepEvent& step) {
     const behaviors::TransitionInfo& info = behavior.transitions[at(t)];
     event("transition", behavior.states[at(info.source)].path, names_of(behavior, info.targets));
   }
+  write_texts();
   for (const int mark : loop_.machine().marks()) event("mark", behavior.marks[at(mark)], "");
   if (step.foot >= 0) {
     event("step", behavior.robot.contacts[at(step.foot)].name,
@@ -71,6 +72,21 @@ void RunLog::after_tick(const StepEvent& step) {
   }
   seen_faults_ = loop_.faults();
   if (loop_.ticks() % every_ == 0) log_->sample(time_ns(), loop_.signals().values());
+}
+
+// What `log:` actions and scripts said.
+void RunLog::write_texts() {
+  const behaviors::Behavior& behavior = loop_.behavior();
+  for (const behaviors::LogRecord& record : loop_.machine().logs()) {
+    const behaviors::LogText& log = behavior.logs[at(record.text)];
+    std::string text = log.pieces.front();
+    for (std::size_t k = 0; k < log.expressions.size(); ++k) {
+      text += fmt::format("{:g}", record.values[k]) + log.pieces[k + 1];
+    }
+    event("log", text, "");
+  }
+  if (loop_.scripts() == nullptr) return;
+  for (const std::string& text : loop_.scripts()->take_messages()) event("log", text, "script");
 }
 
 engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const std::string& world,

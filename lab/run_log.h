@@ -16,14 +16,15 @@ namespace footfall::lab {
 class RunLog {
  public:
   // log may be null: then only state_name() does anything.
-  RunLog(const engine::ControlLoop& loop, engine::LogWriter* log, int every);
+  RunLog(engine::ControlLoop& loop, engine::LogWriter* log, int every);
   void after_tick(const StepEvent& step);
   void event(std::string_view kind, std::string_view name, std::string_view detail);
   std::string state_name() const;
 
  private:
   std::int64_t time_ns() const;
-  const engine::ControlLoop& loop_;
+  void write_texts();
+  engine::ControlLoop& loop_;
   engine::LogWriter* log_;
   int every_;
   core::FaultCounters seen_faults_;

@@ -87,7 +87,7 @@ def main():
             text = (ROOT / document).read_text()
             for language, line, lines in blocks(text):
                 where = f"{document}:{line}"
-                if language == "yaml" and lines and lines[0].startswith("# file:"):
+                if lines and lines[0].startswith("# file:"):
                     failures += check_file(where, lines)
                     files += 1
                 elif language == "yaml" and lines and lines[0].startswith("# save:"):

@@ -1,0 +1,72 @@
+// Between the tick and a behavior's scripts: what a tick asks goes with a snapshot of the robot to
+// a thread that runs Lua, what the scripts want comes back at the start of a later tick. The tick
+// never waits: when the scripts fall behind, requests are dropped and counted. In lock-step the
+// caller waits between two ticks, so the answer is always there in the next one, and runs repeat.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "behaviors/machine.h"
+#include "behaviors/script.h"
+
+namespace footfall::engine {
+
+class ScriptLink {
+ public:
+  // Loads the behavior's scripts anew and starts the thread. Throws std::runtime_error if they do
+  // not load with this access.
+  ScriptLink(const behaviors::Behavior& behavior, const behaviors::ScriptSettings& settings);
+  ~ScriptLink();
+  ScriptLink(const ScriptLink&) = delete;
+  ScriptLink& operator=(const ScriptLink&) = delete;
+
+  // In the tick. Applies what the scripts answered since the last tick.
+  void deliver(behaviors::Machine& machine) noexcept;
+  // Posts this tick's requests; false: some were dropped.
+  bool post(const behaviors::Machine& machine, const double* signals, double time) noexcept;
+
+  // Outside of the tick. Waits until everything posted is answered (lock-step).
+  void wait() noexcept;
+  // Texts logged by scripts and their errors since the last call.
+  std::vector<std::string> take_messages();
+
+ private:
+  static constexpr std::uint32_t kBatches = 16;  // ticks with requests that may wait
+  static constexpr std::size_t kRequests = 64;   // of one tick
+  static constexpr std::size_t kAnswers = 256;   // events or edits of one tick's requests
+
+  // One tick's requests with the robot at that time, then the answer. Used in turn.
+  struct Batch {
+    double time = 0.0;
+    std::size_t request_count = 0;
+    std::array<behaviors::ScriptRequest, kRequests> requests{};
+    std::vector<double> signals, parameters;
+    std::vector<std::uint8_t> active;
+    std::size_t event_count = 0, edit_count = 0;
+    std::array<int, kAnswers> events{};
+    std::array<behaviors::ScriptEdit, kAnswers> edits{};
+  };
+
+  void work() noexcept;
+  void answer(Batch& batch);
+  Batch& batch(std::uint32_t number) noexcept { return batches_[number % kBatches]; }
+
+  const behaviors::Behavior& behavior_;
+  behaviors::Script script_;
+  std::vector<Batch> batches_;
+  // Numbers of batches, modulo 2^32: delivered <= answered <= posted <= delivered + kBatches.
+  std::atomic<std::uint32_t> posted_{0}, answered_{0};
+  std::uint32_t delivered_ = 0;  // of the tick
+  std::atomic<bool> stop_{false};
+  std::mutex messages_mutex_;  // never taken in the tick
+  std::vector<std::string> messages_;
+  std::thread thread_;
+};
+
+}  // namespace footfall::engine
