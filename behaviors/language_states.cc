@@ -98,7 +98,8 @@ constexpr KeySpec kActionRows[] = {
         "sets parameters to the values of expressions, seen at once by what follows"),
     key("log", text_of("a text"), "writes a line; `{EXPR}` is the value of an expression"),
     key("mark", name_of("a mark"), "a row in the log; `mark: step` counts in the signal `steps`"),
-    key("call", name_of("a function"), "runs a function of `scripts`, or one that the program registers"),
+    key("call", name_of("a function"),
+        "runs a function of `scripts`, or one that the program registers"),
 };
 
 constexpr WordSpec kOnLateRows[] = {

@@ -273,16 +273,15 @@ TEST(Loader, WithoutARobotThereIsNoControl) {
   EXPECT_EQ(problems(chart("  states: {a: {contacts: []}}")),
             "b.yaml:3:26: error: `contacts` needs a robot: this behavior names none\n");
 }
-TEST(Loader, WhatIsNotThereYetIsRefusedAtItsPlace) {
+TEST(Loader, ACalledFunctionMustExist) {
   EXPECT_EQ(problems(chart("  on_entry: [{call: f}]")),
-            "b.yaml:3:15: error: 'call' is not available in this version\n");
+            "b.yaml:3:21: error: unknown function 'f': no file of `scripts` defines it, and the "
+            "program registers none of this name\n");
 }
 TEST(Loader, AStateNamedLikeABooleanIsRefused) {
   EXPECT_NE(problems(chart("  states: {off: {}, no: {}}")).find("b.yaml:3:12: error: "),
             std::string::npos);
 }
-
-}  // namespace
 
 TEST(Loader, AParameterWithoutAUnitIsSetToAValueWithOne) {
   Runner run(load(chart(R"(
@@ -295,4 +294,5 @@ parameters: {goal: [0, 0]}
   EXPECT_EQ(run.active(), "there");
 }
 
+}  // namespace
 }  // namespace footfall::tests
