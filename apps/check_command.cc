@@ -5,19 +5,19 @@
 #include <cstdio>
 
 #include "apps/commands.h"
-#include "model/control_model.h"
+#include "behaviors/physics_check.h"
 
 namespace footfall::apps {
 namespace {
 
-// Loads a behavior and, with a robot, compiles its model; true if there was nothing to say.
+// Loads a behavior and, with a robot, judges what it asks of its physics.
 void check_file(const std::string& file, core::Diagnostics& diagnostics) {
   behaviors::LoadOptions options;
   options.search = search_path();
   const auto behavior = behaviors::load_behavior(find_behavior_file(file), options, diagnostics);
   if (!behavior || !behavior->has_robot) return;
   try {
-    model::ControlModel model(behavior->robot);
+    behaviors::check_physics(*behavior, diagnostics);
   } catch (const std::exception& error) {
     diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
   }

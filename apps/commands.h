@@ -34,10 +34,12 @@ std::vector<std::string> search_path();
 // nowhere.
 std::string find_behavior_file(const std::string& name);
 
-// Loads a behavior and prints every problem on stderr; nullptr if there were errors.
+// Loads a behavior, judges what it asks of its robot's physics if told to, and prints every problem
+// on stderr; nullptr if there were errors.
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
                                                      const std::string& robot,
-                                                     const std::vector<std::string>& set);
+                                                     const std::vector<std::string>& set,
+                                                     bool physics = false);
 
 // Every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is set).
 void print_diagnostics(const core::Diagnostics& diagnostics);

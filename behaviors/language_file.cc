@@ -92,7 +92,7 @@ constexpr WordSpec kOff[] = {{"off", "not at all"}};
 
 constexpr KeySpec kPlannerRows[] = {
     key("type", choice(kPlannerTypeRows), "which planner").required(),
-    key("kappa", by_axis(quantity(kNone)),
+    key("kappa", by_axis(quantity(kNone)), map_of(kKappaKeys),
         "pull towards the goal, for x (forward) and y (left) of the heading frame"),
     key("reversal", by_axis(quantity(kTime)),
         "time from the switch to the reversal of the CoM's velocity, for x and y")
@@ -115,6 +115,11 @@ constexpr KeySpec kPlannerRows[] = {
         "`planner.NAME.extension`")
         .otherwise("off"),
     key("doc", text_of("a text"), "what it is for, in a line"),
+};
+
+constexpr KeySpec kKappaRows[] = {
+    key("value", by_axis(quantity(kNone)), "for x and y").required(),
+    key("range", pair(quantity(kNone)), "what it may be").otherwise("[0, 1]"),
 };
 
 constexpr KeySpec kReachRows[] = {
@@ -184,6 +189,8 @@ constinit const core::KeyTable kPlannerKeys = {.id = "planner",
                                                .keys = kPlannerRows,
                                                .selector = "type",
                                                .variants = kPlannerTypeRows};
+constinit const core::KeyTable kKappaKeys = {
+    .id = "kappa", .doc = "A kappa outside its usual range.", .keys = kKappaRows};
 constinit const core::KeyTable kReachKeys = {
     .id = "reach", .doc = "Where the swing foot can go, from the stance foot.", .keys = kReachRows};
 constinit const core::KeyTable kExtensionKeys = {

@@ -78,6 +78,12 @@ const TaskTypeInfo* find_task_type(std::string_view name) {
   return nullptr;
 }
 
+const TaskTypeInfo& task_type_info(TaskType type) {
+  const auto& types = task_types();
+  return *std::find_if(types.begin(), types.end(),
+                       [type](const TaskTypeInfo& info) { return info.type == type; });
+}
+
 const TaskTypeInfo* require_task_type(const core::YamlNode& node, core::Diagnostics& diagnostics) {
   if (const TaskTypeInfo* type = find_task_type(node.scalar)) return type;
   for (const char* later : {"frame_orientation", "frame_pose", "centroidal_angular_momentum"}) {

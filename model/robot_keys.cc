@@ -68,6 +68,9 @@ constexpr KeySpec kContactRows[] = {
     key("radius", quantity(kLength),
         "of a ball about the site: the contact point is that far along the ground's normal")
         .otherwise("0 m"),
+    key("friction", quantity(kNone),
+        "coefficient that `footfall check` counts on; the world in which it runs has its own")
+        .otherwise("0.9"),
 };
 
 constexpr KeySpec kPointRows[] = {

@@ -207,11 +207,13 @@ class RobotLoader {
       const auto choice =
           core::read_choice(*type, kContactTypes, diagnostics_, "a type of contact");
       if (choice) contact.type = static_cast<ContactType>(*choice);
+      contact.type_mark = type->mark;
     }
     if (const YamlNode* radius = node.find("radius")) {
       contact.radius =
           core::read_bounded(*radius, core::kLength, 0.0, kInfinity, diagnostics_).value_or(0.0);
     }
+    read_positive(node, "friction", core::kNone, contact.friction);
     const YamlNode* const group = node.find("group");
     if (group == nullptr) return;
     contact.group = core::read_text(*group, diagnostics_, "a group's name").value_or("");

@@ -287,6 +287,23 @@ class Check(Case):
     def test_a_missing_file(self):
         self.refused(self.footfall("check", "no.yaml"), 2, "no.yaml")
 
+    def test_physics_that_cannot_be_stops_check_and_run_before_anything_moves(self):
+        turning = STAND.replace("tasks: {", "tasks: {turn: {type: body_orientation, axes: [yaw], reference: 0, "
+                                "gains: {kp: 1}}, ").replace("[right_foot, left_foot]", "[right_foot]")
+        bad = self.write("b.yaml", turning)
+        self.refused(self.footfall("check", bad), 2, "b.yaml:7:57", "no contact can produce it")
+        self.refused(self.run_it(bad), 2, "b.yaml:7:57", "no contact can produce it")
+        self.assertEqual(self.footfall("trace", bad).returncode, 0)
+
+    def test_a_warning_about_physics_is_exit_code_1_with_strict_only(self):
+        bad = self.write("b.yaml", STAND.replace("tasks: {rest", "tasks: {stay").replace(
+            "priority: 1,", "joints: [left_knee], priority: 1,"))
+        for arguments, code in ((["check", bad], 0), (["check", "--strict", bad], 1)):
+            result = self.footfall(*arguments)
+            self.assertEqual(result.returncode, code, result.stderr)
+            self.assertIn("warning: 4 of 5 actuated directions have no task", result.stderr)
+        self.assertEqual(self.run_it(bad, "--for", "10ms").returncode, 0)
+
 
 class Graph(Case):
     def graph(self, *arguments, **environment):
