@@ -42,7 +42,9 @@ class RankCheck {
   RankCheck(PhysicsContext& context, const ControlSpec& control)
       : context_(context),
         control_(control),
-        place_(contacts_text(context.behavior, control.contacts)) {}
+        place_(control.contacts.empty()
+                   ? "in the air"
+                   : "on " + contacts_text(context.behavior, control.contacts)) {}
 
   void run(core::Mark state) {
     std::vector<TaskRow> rows = context_.law.rows(control_);
@@ -92,7 +94,7 @@ class RankCheck {
       const Behavior& b = context_.behavior;
       context_.findings.add(
           Severity::error, row.axis->mark, "no-authority", axis_name(b, row),
-          fmt::format("task '{}' cannot move '{}': {} is held by its own contact on {}",
+          fmt::format("task '{}' cannot move '{}': {} is held by its own contact {}",
                       task_name(b, row), axis_name(b, row),
                       b.robot.contacts[static_cast<std::size_t>(row.task->point)].name, place_));
       return;
@@ -104,7 +106,7 @@ class RankCheck {
     const std::string axis = axis_name(context_.behavior, row);
     context_.findings.add(
         Severity::error, row.axis->mark, "no-authority", axis,
-        fmt::format("task '{}' cannot meet '{}' on {}: no contact can produce it{}{}; leave the "
+        fmt::format("task '{}' cannot meet '{}' {}: no contact can produce it{}{}; leave the "
                     "axis out here",
                     task_name(context_.behavior, row), axis, place_, why.empty() ? "" : ", ", why));
   }
@@ -142,7 +144,7 @@ class RankCheck {
         names.empty() ? "the task's other axes" : fmt::format("{}", fmt::join(names, ", "));
     context_.findings.add(
         Severity::warning, row.axis->mark, "task-conflict", axis_name(b, row),
-        fmt::format("task '{}' fights with {} of the same priority {}: on {} '{}' cannot be met "
+        fmt::format("task '{}' fights with {} of the same priority {}: {} '{}' cannot be met "
                     "together with them; give it a priority of its own, or a weight",
                     task_name(b, row), rival, row.task->priority, place_, axis_name(b, row)));
   }
@@ -161,7 +163,7 @@ class RankCheck {
     const int left = ranks.actuated - ranks.covered;
     context_.findings.add(
         Severity::warning, mark, "free-direction", fmt::format("{}", left),
-        fmt::format("{} of {} actuated directions {} no task on {}: {} may drift; add a "
+        fmt::format("{} of {} actuated directions {} no task {}: {} may drift; add a "
                     "joint_damping of a last priority",
                     left, ranks.actuated, left == 1 ? "has" : "have", place_,
                     fmt::join(movers, ", ")));

@@ -291,8 +291,8 @@ class Check(Case):
         turning = STAND.replace("tasks: {", "tasks: {turn: {type: body_orientation, axes: [yaw], reference: 0, "
                                 "gains: {kp: 1}}, ").replace("[right_foot, left_foot]", "[right_foot]")
         bad = self.write("b.yaml", turning)
-        self.refused(self.footfall("check", bad), 2, "b.yaml:7:57", "no contact can produce it")
-        self.refused(self.run_it(bad), 2, "b.yaml:7:57", "no contact can produce it")
+        self.refused(self.footfall("check", bad), 2, "b.yaml:7:53", "no contact can produce it")
+        self.refused(self.run_it(bad), 2, "b.yaml:7:53", "no contact can produce it")
         self.assertEqual(self.footfall("trace", bad).returncode, 0)
 
     def test_a_warning_about_physics_is_exit_code_1_with_strict_only(self):

@@ -44,7 +44,7 @@ TEST(PhysicsRank, NothingMovesTheCentreOfMassInTheAir) {
   const std::string text = standing("[]", height() + rest());
   EXPECT_THAT(physics(text),
               StartsWith(place_of(text, "z]") +
-                         "error: task 'height' cannot meet 'z' on no contact: no contact can "
+                         "error: task 'height' cannot meet 'z' in the air: no contact can "
                          "produce it"));
 }
 
