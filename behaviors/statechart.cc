@@ -78,7 +78,7 @@ void Statechart::begin_tick(std::int64_t tick) noexcept {
 }
 
 bool Statechart::raise(int event) noexcept {
-  if (event < 0) return true;  // a name that nothing listens to
+  if (event < 0 || finished_) return true;  // nothing listens to it
   if (external_.push(event)) return true;
   faults_.add(core::Fault::event_overflow);
   overflowed_ = true;
@@ -107,37 +107,32 @@ void Statechart::run() noexcept {
   }
   safe_requested_ = false;
   while (!finished_) {
-    if (steps_ >= chart_.micro_steps) {  // the rest waits for the next tick
-      select(-1);
-      if (selected_.empty() && internal_.empty() && external_.empty()) return;
+    EventQueue* queue = nullptr;
+    select(-1);
+    while (selected_.empty()) {
+      queue = !internal_.empty() ? &internal_ : &external_;
+      if (queue->empty()) return;
+      select(queue->front());
+      if (selected_.empty()) take_event(*queue);  // an event that enables nothing is gone
+    }
+    if (steps_++ >= chart_.micro_steps) {  // the rest waits for the next tick
       execution_error();
       return;
     }
-    select(-1);
-    if (selected_.empty() && !internal_.empty()) {
-      select(take_event(internal_));
-      if (selected_.empty()) continue;
-    }
-    if (selected_.empty()) {
-      if (external_.empty()) return;
-      select(take_event(external_));
-      if (selected_.empty()) continue;
-    }
+    if (queue != nullptr) take_event(*queue);
     micro_step();
-    ++steps_;
   }
 }
 
-// The next event of a queue; scripts that handle it are asked to.
-int Statechart::take_event(EventQueue& queue) noexcept {
+// Takes the next event from a queue; scripts that handle it are asked to.
+void Statechart::take_event(EventQueue& queue) noexcept {
   const int event = queue.pop();
-  if (chart_.script_events.empty() || chart_.script_events[idx(event)] == 0) return event;
+  if (chart_.script_events.empty() || chart_.script_events[idx(event)] == 0) return;
   if (script_requests_.size() < kRecordCapacity) {
     script_requests_.push_back({true, event});
   } else {
     faults_.add(core::Fault::event_overflow);
   }
-  return event;
 }
 
 // SCXML's microstep: exit all, then the transitions' actions, then enter all.

@@ -25,6 +25,7 @@ class EventQueue {
   explicit EventQueue(int capacity) : items_(static_cast<std::size_t>(capacity)) {}
   bool empty() const noexcept { return count_ == 0; }
   bool push(int event) noexcept;
+  int front() const noexcept { return items_[static_cast<std::size_t>(first_)]; }
   int pop() noexcept;
 
  private:
@@ -95,7 +96,7 @@ class Statechart {
   void run_actions(Range actions) noexcept;
   bool run_action(const ActionInfo& action) noexcept;
   bool call(int index) noexcept;
-  int take_event(EventQueue& queue) noexcept;
+  void take_event(EventQueue& queue) noexcept;
   void raise_internal(int event) noexcept;
   void execution_error() noexcept;
 
