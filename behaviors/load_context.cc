@@ -89,7 +89,6 @@ int LoadContext::compile_time(const core::YamlNode& node, const ValueScope& scop
 // Sought in the state and below, then in its parent and below, and outwards; the shallowest wins.
 int LoadContext::find_target(int from, std::string_view name, std::string& why) const {
   const auto& states = behavior.states;
-  if (name == states[0].path) return 0;
   for (int scope = from; scope >= 0; scope = states[static_cast<std::size_t>(scope)].parent) {
     int best = -1, other = -1;
     for (int s = std::max(scope, 1); s < states[static_cast<std::size_t>(scope)].end; ++s) {
@@ -110,6 +109,7 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
     }
     if (best >= 0) return best;
   }
+  if (name == states[0].path) return 0;
   std::vector<std::string> names;
   for (const StateInfo& info : states) names.push_back(info.name);
   why = fmt::format("unknown state '{}'{}", name, core::did_you_mean(name, names));

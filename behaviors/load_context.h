@@ -54,13 +54,6 @@ struct ValueScope {
   core::Dimension entry_dimension;
 };
 
-// One event or pattern that enables a transition, matched once all events are known.
-struct EventPattern {
-  int transition = 0;
-  std::string text;
-  core::Mark mark;
-};
-
 struct LoadContext {
   LoadContext(Behavior& out, const LoadOptions& given, core::Diagnostics& problems)
       : behavior(out), options(given), diagnostics(problems) {}
@@ -77,7 +70,6 @@ struct LoadContext {
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
   std::vector<std::string> used_templates, used_stacks;
   std::vector<std::string> raised_events, declared_events;
-  std::vector<EventPattern> patterns;
   std::vector<std::string> script_functions;  // that `call:` may name
   std::vector<std::string> script_patterns;   // of footfall.on
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
@@ -138,9 +130,8 @@ void load_invokes(LoadContext& context);         // load_invokes.cc
 void load_control(LoadContext& context);         // load_control.cc
 void finish_events(LoadContext& context);        // load_events.cc
 
-// Events of a transition's `on` (load_events.cc).
-void load_patterns(LoadContext& context, int state, const core::YamlNode& on,
-                   std::vector<EventPattern>& out, int transition);
+// Events of a transition's `on`, into Chart::patterns (load_events.cc).
+void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition);
 // Actions of a list (on_entry, on_exit, do) appended to the chart (load_actions.cc).
 Range load_actions(LoadContext& context, const core::YamlNode& node, int state);
 // Targets of a transition, `initial` or `default` (load_machine.cc).

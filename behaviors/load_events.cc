@@ -88,11 +88,10 @@ void load_events(LoadContext& context) {
   context.built_in_events = static_cast<int>(context.behavior.events.size());
 }
 
-void load_patterns(LoadContext& context, int state, const core::YamlNode& on,
-                   std::vector<EventPattern>& out, int transition) {
+void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition) {
   for (const core::YamlNode* node : patterns_of(on)) {
     const std::string text = resolve_pattern(context, state, *node);
-    if (!text.empty()) out.push_back({transition, text, node->mark});
+    if (!text.empty()) context.behavior.patterns.push_back({transition, text, node->mark});
   }
 }
 
@@ -107,19 +106,15 @@ void finish_events(LoadContext& context) {
     behavior.changed_events.push_back(  // gains: known only now
         context.add_event("parameter.changed." + behavior.parameters[p].name));
   }
-  const int count = static_cast<int>(behavior.events.size());
-  behavior.event_words = (count + 63) / 64;
-  behavior.event_match.assign(
-      behavior.transitions.size() * static_cast<std::size_t>(behavior.event_words), 0);
   if (!context.script_patterns.empty()) {
-    behavior.script_events.assign(static_cast<std::size_t>(count), 0);
+    behavior.script_events.assign(behavior.events.size(), 0);
     for (std::size_t e = 0; e < behavior.events.size(); ++e) {
       for (const std::string& pattern : context.script_patterns) {
         if (Chart::event_matches(pattern, behavior.events[e])) behavior.script_events[e] = 1;
       }
     }
   }
-  for (const EventPattern& pattern : context.patterns) {
+  for (const EventPattern& pattern : behavior.patterns) {
     const bool exact = !pattern.text.ends_with("*");
     const bool changed = pattern.text.starts_with(kChanged) &&
                          behavior.find_parameter(pattern.text.substr(kChanged.size())) >= 0;
@@ -134,15 +129,12 @@ void finish_events(LoadContext& context) {
                       fmt::format("nothing raises '{}', and `events` does not list it{}",
                                   pattern.text, core::did_you_mean(pattern.text, known)));
     }
-    for (int e = 0; e < count; ++e) {
-      const std::string& event = behavior.events[static_cast<std::size_t>(e)];
-      if (!Chart::event_matches(pattern.text, event)) continue;
-      if (event.starts_with("parameter.changed.")) behavior.watches_parameters = true;
-      const int word = pattern.transition * behavior.event_words + e / 64;
-      behavior.event_match[static_cast<std::size_t>(word)] |= std::uint64_t{1}
-                                                              << (static_cast<unsigned>(e) % 64U);
+    for (const std::string& event : behavior.events) {
+      if (!event.starts_with(kChanged) || !Chart::event_matches(pattern.text, event)) continue;
+      behavior.watches_parameters = true;
     }
   }
+  behavior.match_events();
 }
 
 }  // namespace footfall::behaviors

@@ -46,7 +46,7 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
   scope.state = state;
   if (on != nullptr) {
     transition.has_event = true;
-    load_patterns(context, state, *on, context.patterns, index);
+    load_patterns(context, state, *on, index);
   }
   if (when != nullptr) transition.guard = context.compile_condition(*when, scope);
   if (after != nullptr) transition.after = context.compile_time(*after, scope);
