@@ -230,6 +230,14 @@ std::optional<Quantity> parse_quantity(std::string_view text) {
   return quantity;
 }
 
+std::vector<UnitInfo> all_units() {
+  std::vector<UnitInfo> units;
+  for (const UnitDefinition& unit : kUnits) {
+    units.push_back({unit.name, unit.numerator / unit.denominator, unit.dimension});
+  }
+  return units;
+}
+
 std::string dimension_name(Dimension dimension) {
   if (dimension == kNone) return "a plain number";
   if (dimension == kTime) return "a time";
