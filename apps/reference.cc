@@ -12,6 +12,7 @@
 #include "behaviors/language.h"
 #include "behaviors/load_task_types.h"
 #include "core/fault.h"
+#include "core/unit_list.h"
 
 namespace footfall::apps {
 namespace {

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "core/unit_list.h"
+
 namespace footfall::apps {
 namespace {
 

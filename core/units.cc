@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "core/unit_list.h"
+
 namespace footfall::core {
 
 namespace {

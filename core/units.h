@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace footfall::core {
 
@@ -52,14 +51,6 @@ struct Quantity {
 std::optional<Quantity> parse_quantity(std::string_view text);
 // Parses a unit expression such as `kg m^2`, `1/s^2`, `Nm`, `%`: its SI factor and dimension.
 std::optional<Quantity> parse_unit(std::string_view text);
-// A unit that a file may write, e.g. `ms`: factor 1e-3, a time.
-struct UnitInfo {
-  std::string_view name;
-  double factor = 1.0;
-  Dimension dimension;
-};
-// All of them, by dimension.
-std::vector<UnitInfo> all_units();
 // "a time", "a length", "a plain number", or the SI unit for what has no everyday name.
 std::string dimension_name(Dimension dimension);
 // SI unit text for logs and plots: "m/s^2", "N", "Nm", "" for a plain number.
