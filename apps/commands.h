@@ -7,6 +7,7 @@
 
 #include "behaviors/loader.h"
 #include "core/diagnostics.h"
+#include "core/key_table.h"
 
 namespace CLI {
 class App;
@@ -25,6 +26,11 @@ void add_check_command(CLI::App& app, int& exit_code);
 void add_trace_command(CLI::App& app, int& exit_code);
 void add_signals_command(CLI::App& app, int& exit_code);
 void add_graph_command(CLI::App& app, int& exit_code);
+void add_schema_command(CLI::App& app, int& exit_code);
+void add_reference_command(CLI::App& app, int& exit_code);
+
+// The kinds of file that people write, as tables of keys.
+std::vector<const core::FileTable*> file_tables();
 
 // Folders that hold robots/, behaviors/library/ and sim/worlds/: the working folder, those of
 // FOOTFALL_PATH (colons between), the source tree, the installed data.

@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
   footfall::apps::add_trace_command(app, exit_code);
   footfall::apps::add_signals_command(app, exit_code);
   footfall::apps::add_graph_command(app, exit_code);
+  footfall::apps::add_schema_command(app, exit_code);
+  footfall::apps::add_reference_command(app, exit_code);
   footfall::apps::add_report_command(app, exit_code);
   try {
     app.parse(argc, argv);

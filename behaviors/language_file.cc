@@ -18,7 +18,7 @@ constexpr KeySpec kBehaviorRows[] = {
     key("robot", text_of("the name of a robot"),
         "a folder of `robots/` or the path of a robot file; without it the behavior is a pure "
         "statechart"),
-    key("parameters", by_name(map_of(kParameterKeys)), by_name(by_axis(any_quantity())),
+    key("parameters", by_name(map_of(kParameterKeys)), by_name(one_or_list(any_quantity())),
         "numbers under a name, used as `$NAME`, set with `--set NAME=VALUE`"),
     key("events", by_name(text_of("what it means")),
         "events that may be raised from outside, each with its meaning"),
@@ -44,7 +44,8 @@ constexpr KeySpec kScriptsRows[] = {
 };
 
 constexpr KeySpec kParameterRows[] = {
-    key("value", by_axis(any_quantity()), "a number with its unit, or a list of up to 16 of them")
+    key("value", one_or_list(any_quantity()),
+        "a number with its unit, or a list of up to 16 of them")
         .required(),
     key("range", pair(any_quantity()),
         "`[LEAST, GREATEST]` of every value; needed where `live: true`"),
@@ -177,7 +178,9 @@ constinit const core::KeyTable kGainsKeys = {
     .doc =
         "Gains of one task: u = x''_ref + kp e + ki ∫e + kd e'. At least one of them; a number "
         "for all axes, a list in the order of the task's axes, or a map by axis or joint.",
-    .keys = kGainsRows};
+    .keys = kGainsRows,
+    .one_of = {"kp ki kd"},
+    .part = true};
 constinit const core::KeyTable kTorqueLoopKeys = {
     .id = "torque_loop",
     .doc =

@@ -160,7 +160,11 @@ void load_history(LoadContext& context, int s) {
 void load_done(LoadContext& context, int s) {
   StateInfo& info = info_of(context, s);
   const core::YamlNode* node = context.sources[static_cast<std::size_t>(s)]->keys.find("done");
-  if (node == nullptr || !node->is_scalar()) return;
+  if (node == nullptr) return;
+  if (!node->is_scalar()) {
+    core::report_expected(*node, "all, any or a region", context.diagnostics);
+    return;
+  }
   if (node->scalar == "all") return;
   if (node->scalar == "any") {
     info.done = DoneRule::any;

@@ -71,7 +71,11 @@ GainEntry* choose_gains(LoadContext& context, const DraftItem& item, const Draft
       }
       continue;
     }
-    if (!gains->node->is_scalar() || !require_gain_table(context, *gains->node)) return nullptr;
+    if (!gains->node->is_scalar()) {
+      core::report_expected(*gains->node, "the name of a gain table", context.diagnostics);
+      return nullptr;
+    }
+    if (!require_gain_table(context, *gains->node)) return nullptr;
     if (GainEntry* entry = find_gains(context, gains->node->scalar, item.name)) return entry;
     tables += fmt::format("{}'{}'", tables.empty() ? "" : " and ", gains->node->scalar);
   }
