@@ -232,7 +232,7 @@ class RobotLoader {
       core::check_name(entry, diagnostics_, "a point's name");
       if (robot_.find_contact(entry.key) >= 0) {
         diagnostics_.error(
-            entry.key_mark, "duplicate-name",
+            entry.key_mark, "duplicate",
             fmt::format("'{}' is a contact already, and a contact is a point", entry.key));
       }
       PointDescription point{entry.key, {}};
@@ -299,7 +299,7 @@ class RobotLoader {
     if (std::find(known.begin(), known.end(), *name) == known.end()) {
       report_unknown(node, "contact, group, point or joint", known);
     } else if (std::find(used.begin(), used.end(), *name) != used.end()) {
-      diagnostics_.error(node.mark, "twice", fmt::format("'{}' changes places twice", *name));
+      diagnostics_.error(node.mark, "duplicate", fmt::format("'{}' changes places twice", *name));
     }
     used.push_back(*name);
     return *name;
@@ -330,7 +330,7 @@ class RobotLoader {
       const auto choice = core::read_choice(entry.value, kReactions, diagnostics_, "a reaction");
       if (found == names.end()) {
         diagnostics_.error(
-            entry.key_mark, "unknown-name",
+            entry.key_mark, "unknown-fault",
             fmt::format("no fault '{}'{}", entry.key, hint_or_list(entry.key, names)));
       } else if (choice) {
         robot_.reactions[static_cast<std::size_t>(found - names.begin())] =
