@@ -78,8 +78,8 @@ struct LoadContext {
   std::vector<std::string> used_templates, used_stacks;
   std::vector<std::string> raised_events, declared_events;
   std::vector<EventPattern> patterns;
-  std::vector<std::string> script_functions;  // that `call:` may name
-  std::vector<std::string> script_patterns;   // of footfall.on
+  std::vector<std::string> script_functions;              // that `call:` may name
+  std::vector<std::string> script_patterns;               // of footfall.on
   std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::vector<std::string_view> task_type_of_name;  // by Behavior::task_names
