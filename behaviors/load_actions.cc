@@ -54,6 +54,9 @@ void set_component(LoadContext& context, const ParameterInfo& info, int componen
 
 void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope& scope) {
   if (!core::expect_map(node, "parameters by name", context.diagnostics)) return;
+  if (node.entries.empty()) {
+    context.error(node.mark, "empty-value", "nothing to set: expected {PARAMETER: VALUE}");
+  }
   for (const core::YamlEntry& entry : node.entries) {
     const int index = context.behavior.find_parameter(entry.key);
     if (index < 0) {

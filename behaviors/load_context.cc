@@ -95,6 +95,10 @@ int LoadContext::compile_value(const core::YamlNode& node, std::optional<core::D
   if (core::is_expression(node)) {
     return compile(node, std::string_view(node.scalar).substr(1), 1, expected, scope);
   }
+  if (!node.quoted && (node.scalar == "true" || node.scalar == "false")) {
+    core::report_expected(node, core::dimension_name(expected), diagnostics);
+    return -1;
+  }
   const char first = node.scalar.front();
   const bool name = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');
   const bool plain = node.scalar.find_first_of(" +-*/^()?:,<>=") == std::string::npos;

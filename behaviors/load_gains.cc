@@ -50,10 +50,17 @@ std::optional<std::vector<double>> read_values(LoadContext& context, const core:
     return core::read_vector(node, dimension, use.axes, context.diagnostics);
   }
   std::vector<double> values(size, 0.0);
+  const int before = context.diagnostics.error_count();
   const auto entries =
       core::match_names(node, use.axes, use.joints ? "joint" : "axis", context.diagnostics);
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (entries[k] == nullptr) continue;
+    if (entries[k] == nullptr) {
+      if (!use.joints && context.diagnostics.error_count() == before) {
+        context.error(node.mark, "missing-key",
+                      fmt::format("no value for '{}' (0 if it is meant)", use.axes[k]));
+      }
+      continue;
+    }
     values[k] =
         core::read_quantity(entries[k]->value, dimension, context.diagnostics).value_or(0.0);
   }

@@ -179,7 +179,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
   if (context.diagnostics.error_count() != before) return std::nullopt;
   if (axes.empty()) {
     if (axes_key != nullptr && axes_key->node->is_sequence() && axes_key->node->items.empty()) {
-      context.error(axes_key->node->mark, "empty-list",
+      context.error(axes_key->node->mark, "empty-value",
                     fmt::format("`{}: []` leaves nothing to control: name some, or remove the task "
                                 "with `{}: off`",
                                 axes_key->key, item.name));

@@ -219,6 +219,9 @@ void expand_children(LoadContext& context, StateSource& state, const core::YamlN
                      int depth) {
   if (states.is_null()) return;
   if (!core::expect_map(states, "states by name", context.diagnostics)) return;
+  if (states.entries.empty()) {
+    context.error(states.mark, "empty-value", "`states: {}` holds no state: leave it out");
+  }
   for (const core::YamlEntry& entry : states.entries) {
     if (!core::check_name(entry, context.diagnostics, "the name of a state")) continue;
     state.children.push_back(

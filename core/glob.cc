@@ -63,6 +63,10 @@ std::vector<const YamlEntry*> match_names(const YamlNode& map,
                                           std::string_view what, Diagnostics& diagnostics) {
   std::vector<const YamlEntry*> matched(names.size(), nullptr);
   if (!expect_map(map, fmt::format("a map by {}", what), diagnostics)) return matched;
+  if (map.entries.empty()) {
+    diagnostics.error(map.mark, "empty-value",
+                      fmt::format("an empty map says nothing about any {}: leave it out", what));
+  }
   for (const YamlEntry& entry : map.entries) {
     if (is_glob(entry.key)) continue;
     const int index = index_of(entry.key, names);

@@ -370,6 +370,10 @@ std::optional<std::vector<double>> read_vector(const YamlNode& node, Dimension e
     return std::nullopt;
   } else if (node.is_map()) {
     const int errors_before = diagnostics.error_count();
+    if (node.entries.empty()) {
+      diagnostics.error(node.mark, "empty-value",
+                        fmt::format("expected a value for at least one of {}", fmt::join(axes, ", ")));
+    }
     check_keys(node, axes, diagnostics);
     good = diagnostics.error_count() == errors_before;
     for (std::size_t i = 0; i < axes.size(); ++i) {

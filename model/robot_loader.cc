@@ -148,6 +148,8 @@ class RobotLoader {
     if (!core::expect_map(*sea, "{spring: STIFFNESS, rotor: INERTIA}", diagnostics_)) return;
     core::check_keys(*sea, kSeaKeys, diagnostics_);
     // N m/rad: an angle has no dimension, so a stiffness is a torque here.
+    core::require_key(*sea, "spring", diagnostics_);
+    core::require_key(*sea, "rotor", diagnostics_);
     read_positive(*sea, "spring", core::kTorque, joint.spring);
     read_positive(*sea, "rotor", core::kInertia, joint.rotor);
   }
@@ -175,6 +177,9 @@ class RobotLoader {
     if (!core::expect_map(node, "a map of joint lists by name", diagnostics_)) return;
     for (const YamlEntry& entry : node.entries) {
       core::check_name(entry, diagnostics_, "a group's name");
+      if (entry.value.is_sequence() && entry.value.items.empty()) {
+        diagnostics_.error(entry.value.mark, "empty-value", "a group needs at least one joint");
+      }
       robot_.groups.push_back(
           {entry.key, core::expand_names(entry.value, joint_names_, "joint", diagnostics_)});
     }
