@@ -56,8 +56,8 @@ def footfall(*arguments):
 
 
 def draw(count, rng, folder):
-    """`count` mistakes as (original, mutation, path of the mutant); the tree of files is copied for `base:`."""
-    for file in FILES:
+    """`count` mistakes as (original, mutation, path of the mutant); the files are copied for `base:` and `scripts:`."""
+    for file in [*FILES, *(lua for file in FILES for lua in file.parent.glob("*.lua"))]:
         copy = folder / file.relative_to(rows.ROOT)
         copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(file, copy)
