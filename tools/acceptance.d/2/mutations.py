@@ -97,12 +97,13 @@ class Mutator:
         self.tokens = tokens(text)
         self.words = [t for t in self.tokens if t.kind == "word"]
         self.quantities = [t for t in self.tokens if t.kind == "number" and unit_of(t)]
+        self.kinds = KINDS if self.quantities else [k for k in KINDS if k != "unit"]
         self.names = sorted({t.text for t in self.words})
         self.lines = text.split("\n")
         self.code_lines = sorted({t.line for t in self.tokens})
 
     def draw(self, rng):
-        return getattr(self, "_" + rng.choice(KINDS))(rng)
+        return getattr(self, "_" + rng.choice(self.kinds))(rng)
 
     def _put(self, kind, token, new, what):
         text = self.text[:token.start] + new + self.text[token.end:]
