@@ -95,8 +95,8 @@ int LoadContext::compile_value(const core::YamlNode& node, std::optional<core::D
   if (core::is_expression(node)) {
     return compile(node, std::string_view(node.scalar).substr(1), 1, expected, scope);
   }
-  if (!node.quoted && (node.scalar == "true" || node.scalar == "false")) {
-    core::report_expected(node, core::dimension_name(expected), diagnostics);
+  if (expected && !node.quoted && (node.scalar == "true" || node.scalar == "false")) {
+    core::report_expected(node, core::dimension_name(*expected), diagnostics);
     return -1;
   }
   const char first = node.scalar.front();

@@ -15,6 +15,8 @@ WORDS = {"axes": [{"x", "y", "z"}, {"roll", "pitch", "yaw"}],
          "on_late": [{"keep_last", "closed_form"}],
          "form": [{"frozen", "continuous"}],
          "live": [{"true", "false"}], "retarget": [{"true", "false"}], "internal": [{"true", "false"}]}
+# Lists of things that each stand for themselves.
+LISTS = {"transitions", "do", "on_entry", "on_exit", "invoke"}
 # Keys that a file may leave out, and nobody misses them.
 OPTIONAL = {"doc", "ranges", "on_entry", "on_exit", "internal", "retarget", "live", "form", "frame",
             "acceleration_limit", "width_offset", "goal_speed", "goal_error_limit", "reach"}
@@ -38,6 +40,10 @@ def removed(before, after, path=()):
     if before[0] != after[0] or before[0] == "s":
         return None
     if before[0] == "l":
+        if len(before[1]) == len(after[1]) + 1:
+            for i in range(len(before[1])):
+                if before[1][:i] + before[1][i + 1:] == after[1]:
+                    return [path + (i,)]
         if len(before[1]) != len(after[1]):
             return None
         pairs = list(zip(range(len(before[1])), before[1], after[1]))
@@ -117,6 +123,10 @@ class Meaning:
 
     def _may_go(self, path):
         key = path[-1]
+        if isinstance(key, int):
+            return len(path) > 1 and path[-2] in LISTS
+        if key == "transitions":  # the state has another way out
+            return any(p[:-1] == path[:-1] and p[-1] == "after" for _, _, p, is_key in self.places if is_key)
         over_stack = "tasks" in path and "states" in path  # a state's word over its stack's
         state = len(path) > 1 and path[-2] == "states" and not self._refers(key)
         return self.based or key in OPTIONAL or (over_stack and "stacks" not in path) or state

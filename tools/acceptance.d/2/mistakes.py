@@ -7,7 +7,8 @@ that is accepted change what the robot does?
 A mistake is one of: a letter of a word dropped, doubled, swapped with the next or replaced; a token dropped, doubled or
 swapped with the next one; a unit replaced by another; a word replaced by another word of the file; a line indented by
 one step more or less; a line dropped. Tokens are words, numbers with their unit, and punctuation, outside comments and
-free text (`doc:`, `log:`, `reason:`). Kinds are drawn with equal chances, files by their number of tokens.
+free text (`doc:`, `log:`, `reason:`, texts in `events:`). Kinds are drawn with equal chances, files by their number of
+tokens.
 
 Some such edits are another behavior, which its author may have meant; no tool can call them mistakes. They are not
 drawn. meaning.py decides by the file alone, never by what Footfall says; these are all of them:
@@ -19,7 +20,8 @@ drawn. meaning.py decides by the file alone, never by what Footfall says; these 
   - a name that nothing else in the file refers to, for another name: a state, an internal force; a task that a state
     lays over its stack for another task of the file;
   - a whole entry removed that may be left out: a state that nothing refers to, a state's word over its stack's tasks,
-    one of the keys in meaning.OPTIONAL, and anything in a file with `base:` (then the base's word holds).
+    one of several transitions or actions, one of the keys in meaning.OPTIONAL, and anything in a file with `base:`
+    (then the base's word holds).
 
 An accepted mistake is compared with the original: `footfall trace` with a script, and `footfall run` of 4 s in MuJoCo.
 

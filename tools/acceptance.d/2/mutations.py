@@ -16,6 +16,7 @@ NUMBER = re.compile(rf"(?:(?<=[\[,: ])-)?(?<![\w.])\d+(?:\.\d+)?(?:[eE][-+]?\d+)
 WORD = re.compile(r"[.\w/]+\.yaml|\$?[A-Za-z_]\w*(?:\.\$?\w+)*")
 PUNCTUATION = re.compile(r"<=|>=|==|!=|[][{},:()+*/^<>=!?\"'&|%@`~;-]")
 FREE = re.compile(r"\b(?:doc|log|reason): (\"[^\"]*\"|[^,}\n]*)")
+QUOTED = re.compile(r"\"[^\"]*\"")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 KINDS = ["misspell", "drop", "double", "swap", "unit", "name", "indent", "line"]
 
@@ -37,6 +38,8 @@ def tokens_of_line(line):
     """(start, end, kind) of words, numbers with their unit and punctuation, outside comments and free text."""
     end = comment_start(line)
     free = [m.span(1) for m in FREE.finditer(line, 0, end)]
+    if line.startswith("events:"):
+        free += [m.span() for m in QUOTED.finditer(line, 0, end)]
     at, out = 0, []
     while at < end:
         inside = [b for a, b in free if a <= at < b]
