@@ -135,7 +135,7 @@ Operand ExpressionParser::parse_parameter(const Token& token) {
       }
     }
     if (component < 0) {
-      fail(token, "bad-size",
+      fail(token, "size",
            fmt::format("parameter '{}' has {} values: write ${}.x", parameter.name, parameter.size,
                        parameter.name));
     }
@@ -154,7 +154,7 @@ int ExpressionParser::component_of(const std::string& name, int size) {
 
 Operand ExpressionParser::parse_entry(const Token& token) {
   if (scope_.entry_axes == nullptr) {
-    fail(token, "unknown-name", "'entry' has a meaning only in a task's reference");
+    fail(token, "misplaced-name", "'entry' has a meaning only in a task's reference");
   }
   int axis = scope_.entry_axis;
   if (token.text.size() > 5) {
@@ -164,12 +164,12 @@ Operand ExpressionParser::parse_entry(const Token& token) {
       if ((*scope_.entry_axes)[k] == name) axis = static_cast<int>(k);
     }
     if (axis < 0) {
-      fail(token, "unknown-name",
+      fail(token, "unknown-axis",
            fmt::format("the task has no axis '{}'{}", name,
                        core::did_you_mean(name, *scope_.entry_axes)));
     }
   } else if (axis < 0) {
-    fail(token, "unknown-name", "'entry' needs an axis here: write entry.x");
+    fail(token, "misplaced-name", "'entry' needs an axis here: write entry.x");
   }
   emit(Op::entry, axis);
   return {scope_.entry_dimension, false, false, 0.0};
@@ -182,7 +182,7 @@ Operand ExpressionParser::parse_name(const Token& token) {
     return {};
   }
   if (name == "t") {
-    if (scope_.state < 0) fail(token, "unknown-name", "'t' has a meaning only in a state");
+    if (scope_.state < 0) fail(token, "misplaced-name", "'t' has a meaning only in a state");
     emit(Op::state_time, scope_.state);
     return {core::kTime, false, false, 0.0};
   }

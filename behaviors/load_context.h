@@ -70,14 +70,19 @@ struct LoadContext {
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
   std::vector<std::string> used_templates, used_stacks;
   std::vector<std::string> raised_events, declared_events;
-  std::vector<std::string> script_functions;  // that `call:` may name
-  std::vector<std::string> script_patterns;   // of footfall.on
+  std::vector<std::string> script_functions;              // that `call:` may name
+  std::vector<std::string> script_patterns;               // of footfall.on
+  std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::vector<std::string_view> task_type_of_name;  // by Behavior::task_names
   int expanded_states = 0;
+  bool states_missing = false;  // after an error in a template: a name unknown may be one of them
 
   void error(core::Mark mark, std::string_view id, std::string text);
   void warning(core::Mark mark, std::string_view id, std::string text);
+  // For what is not there (nobody uses it, nothing raises it): not said once there are errors,
+  // which may be the reason.
+  void absence(core::Mark mark, std::string_view id, std::string text);
   // The value under a key of a map in the file's root, nullptr if there is none.
   const core::YamlNode* section(std::string_view key) const { return root.find(key); }
 
@@ -129,6 +134,7 @@ void load_transitions(LoadContext& context);     // load_transitions.cc
 void load_invokes(LoadContext& context);         // load_invokes.cc
 void load_control(LoadContext& context);         // load_control.cc
 void finish_events(LoadContext& context);        // load_events.cc
+void warn_absences(LoadContext& context);        // load_absences.cc
 
 // Events of a transition's `on`, into Chart::patterns (load_events.cc).
 void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition);

@@ -15,6 +15,7 @@ struct DraftKey {
   std::string key;
   const core::YamlNode* node = nullptr;
   int owner = 0;
+  core::Mark mark{};  // of the key itself
 };
 
 struct DraftItem {
@@ -33,6 +34,7 @@ struct DraftGains {
 };
 
 struct Draft {
+  core::Mark mark;                           // of the stack, else of the innermost state
   const core::YamlNode* contacts = nullptr;  // a list
   int contacts_owner = 0;
   std::vector<DraftItem> tasks;

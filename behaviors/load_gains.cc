@@ -50,10 +50,17 @@ std::optional<std::vector<double>> read_values(LoadContext& context, const core:
     return core::read_vector(node, dimension, use.axes, context.diagnostics);
   }
   std::vector<double> values(size, 0.0);
+  const int before = context.diagnostics.error_count();
   const auto entries =
       core::match_names(node, use.axes, use.joints ? "joint" : "axis", context.diagnostics);
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (entries[k] == nullptr) continue;
+    if (entries[k] == nullptr) {
+      if (!use.joints && context.diagnostics.error_count() == before) {
+        context.error(node.mark, "missing-key",
+                      fmt::format("no value for '{}' (0 if it is meant)", use.axes[k]));
+      }
+      continue;
+    }
     values[k] =
         core::read_quantity(entries[k]->value, dimension, context.diagnostics).value_or(0.0);
   }
@@ -126,9 +133,9 @@ void load_gains(LoadContext& context) {
     if (!core::check_name(table, context.diagnostics, "the name of a gain table")) continue;
     if (!core::expect_map(table.value, "gains by task", context.diagnostics)) continue;
     for (const core::YamlEntry& task : table.value.entries) {
-      if (!check_entry(context, task.value)) continue;
       const std::string name = fmt::format("gains.{}.{}", table.key, task.key);
       GainEntry& entry = context.gain_entries[name];
+      entry.made = !check_entry(context, task.value);  // then there is nothing to make
       entry.node = &task.value;
       entry.name = name;
     }
@@ -141,6 +148,7 @@ GainEntry* find_gains(LoadContext& context, const std::string& table, const std:
 }
 
 bool require_gain_table(LoadContext& context, const core::YamlNode& name) {
+  if (!core::expect_scalar(name, "the name of a gain table", context.diagnostics)) return false;
   const core::YamlNode* section = context.section("gains");
   std::vector<std::string> tables;
   if (section != nullptr) {
@@ -153,7 +161,7 @@ bool require_gain_table(LoadContext& context, const core::YamlNode& name) {
   }
   context.error(name.mark, "unknown-gains",
                 fmt::format("unknown gain table '{}'{}", name.scalar,
-                            core::did_you_mean(name.scalar, tables)));
+                            core::did_you_mean_or_list(name.scalar, tables)));
   return false;
 }
 
@@ -187,7 +195,7 @@ void use_gains(LoadContext& context, GainEntry& entry, const GainUse& use,
     const bool same = entry.axes == use.axes;
     if (!node->is_scalar() && !same) {
       context.error(
-          node->mark, "bad-size",
+          node->mark, "size",
           fmt::format("{} serves a task with other axes too: write one number", entry.name));
     }
     for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -197,10 +205,24 @@ void use_gains(LoadContext& context, GainEntry& entry, const GainUse& use,
   }
 }
 
+void warn_incomplete_gains(LoadContext& context) {
+  for (const auto& [name, entry] : context.gain_entries) {
+    const core::YamlNode& node = *entry.node;
+    const bool p = node.find("kp") != nullptr;
+    if (node.find("ki") != nullptr && !p) {
+      context.absence(node.mark, "incomplete-gains",
+                      "ki without kp cannot be stable: is a kp missing?");
+    } else if (p && node.find("kd") == nullptr) {
+      context.absence(node.mark, "incomplete-gains",
+                      "kp without kd never comes to rest: add a kd (`kd: 0` if it is meant)");
+    }
+  }
+}
+
 void make_unused_gains(LoadContext& context) {
   for (auto& [name, entry] : context.gain_entries) {
     if (entry.made) continue;
-    context.warning(entry.node->mark, "unused", fmt::format("no task uses {}", name));
+    context.absence(entry.node->mark, "unused", fmt::format("no task uses {}", name));
     make_slots(context, entry, {});
   }
 }

@@ -24,6 +24,8 @@ GainEntry* inline_gains(LoadContext& context, const std::string& owner, const st
 // Slots of the entry into the axes; made at the first use, when the number of axes is known.
 void use_gains(LoadContext& context, GainEntry& entry, const GainUse& use,
                std::vector<AxisSpec>& axes);
+// Warns about kp without kd, and ki without kp.
+void warn_incomplete_gains(LoadContext& context);
 // Checks what no task uses.
 void make_unused_gains(LoadContext& context);
 

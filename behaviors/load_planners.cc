@@ -113,7 +113,7 @@ void read_goal(LoadContext& context, const core::YamlNode& map, PlannerInfo& pla
   }
   const ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
   if (info.size != 2) {
-    context.error(node->mark, "bad-size",
+    context.error(node->mark, "size",
                   fmt::format("a goal has 2 values, '{}' has {}", name, info.size));
   } else if (!info.bare && !(info.dimension == core::kLength)) {
     context.error(node->mark, "dimension",
@@ -154,10 +154,8 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
   if (!core::check_name(entry, context.diagnostics, "the name of a planner")) return;
   const core::YamlNode& map = entry.value;
   if (!core::expect_map(map, "a planner", context.diagnostics)) return;
-  const core::YamlNode* type = core::require_key(map, "type", context.diagnostics);
-  if (type == nullptr ||
-      !core::read_choice(*type, kPlannerTypes, context.diagnostics, "a type of planner")) {
-    return;
+  if (const auto* type = core::require_key(map, "type", context.diagnostics)) {
+    core::read_choice(*type, kPlannerTypes, context.diagnostics, "a type of planner");
   }
   core::check_keys(map, kPlannerKeys, context.diagnostics);
   PlannerInfo planner;

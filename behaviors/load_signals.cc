@@ -85,6 +85,7 @@ const TaskTypeInfo& task_type_info(TaskType type) {
 }
 
 const TaskTypeInfo* require_task_type(const core::YamlNode& node, core::Diagnostics& diagnostics) {
+  if (!core::expect_scalar(node, "a type of task", diagnostics)) return nullptr;
   if (const TaskTypeInfo* type = find_task_type(node.scalar)) return type;
   for (const char* later : {"frame_orientation", "frame_pose", "centroidal_angular_momentum"}) {
     if (node.scalar != later) continue;
@@ -94,9 +95,9 @@ const TaskTypeInfo* require_task_type(const core::YamlNode& node, core::Diagnost
   }
   std::vector<std::string> names;
   for (const TaskTypeInfo& type : task_types()) names.emplace_back(type.name);
-  diagnostics.error(
-      node.mark, "unknown-task-type",
-      fmt::format("unknown task type '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
+  diagnostics.error(node.mark, "unknown-task-type",
+                    fmt::format("unknown task type '{}'{}", node.scalar,
+                                core::did_you_mean_or_list(node.scalar, names)));
   return nullptr;
 }
 

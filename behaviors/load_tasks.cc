@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "behaviors/language.h"
 #include "behaviors/load_gains.h"
 
@@ -13,15 +15,16 @@ using tasks::TaskType;
 
 // Index into the model's points: contacts first, then the robot's points.
 int find_point(LoadContext& context, const core::YamlNode& node) {
+  if (!core::expect_scalar(node, "the name of a point", context.diagnostics)) return -1;
   const auto& robot = context.behavior.robot;
   std::vector<std::string> names = context.contact_names();
   for (const auto& point : robot.points) names.push_back(point.name);
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (node.is_scalar() && names[k] == node.scalar) return static_cast<int>(k);
+    if (names[k] == node.scalar) return static_cast<int>(k);
   }
-  context.error(
-      node.mark, "unknown-point",
-      fmt::format("unknown point '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
+  context.error(node.mark, "unknown-point",
+                fmt::format("unknown point '{}'{}", node.scalar,
+                            core::did_you_mean_or_list(node.scalar, names)));
   return -1;
 }
 
@@ -71,10 +74,6 @@ GainEntry* choose_gains(LoadContext& context, const DraftItem& item, const Draft
       }
       continue;
     }
-    if (!gains->node->is_scalar()) {
-      core::report_expected(*gains->node, "the name of a gain table", context.diagnostics);
-      return nullptr;
-    }
     if (!require_gain_table(context, *gains->node)) return nullptr;
     if (GainEntry* entry = find_gains(context, gains->node->scalar, item.name)) return entry;
     tables += fmt::format("{}'{}'", tables.empty() ? "" : " and ", gains->node->scalar);
@@ -94,7 +93,7 @@ void compile_gains(LoadContext& context, const DraftItem& item, const Draft& dra
   if (type.type == TaskType::joint_damping) {
     for (const char* key : {"kp", "ki"}) {
       if (const auto* node = entry->node->find(key)) {
-        context.error(node->mark, "no-effect",
+        context.error(node->mark, "misplaced-key",
                       fmt::format("joint_damping has kd only, no {}", key));
       }
     }
@@ -136,8 +135,9 @@ void check_task_keys(LoadContext& context, const DraftItem& item, const TaskType
   core::YamlNode map;  // the merged keys, for check_keys
   map.kind = core::YamlNode::Kind::map;
   for (const DraftKey& key : item.keys) {
+    if (key.key == "doc") core::check_doc(*key.node, context.diagnostics);
     if (std::find(known.begin(), known.end(), key.key) != known.end()) continue;
-    map.entries.push_back({key.key, key.node->mark, false, {}});
+    map.entries.push_back({key.key, key.mark, false, {}});
   }
   core::check_keys(map, known, context.diagnostics);
 }
@@ -154,7 +154,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
     }
     context.error(item.mark, "unknown-task",
                   fmt::format("task '{}' is not in the stack in force, and has no type{}",
-                              item.name, core::did_you_mean(item.name, names)));
+                              item.name, core::did_you_mean_or_list(item.name, names)));
     return std::nullopt;
   }
   const TaskTypeInfo* type = require_task_type(*type_key->node, context.diagnostics);
@@ -173,9 +173,19 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
     if (spec.point < 0) return std::nullopt;
   }
   const DraftKey* axes_key = item.find(type->joints ? "joints" : "axes");
+  const int before = context.diagnostics.error_count();
   const std::vector<int> axes = read_axes(
       context, *type, axes_key == nullptr ? nullptr : axes_key->node, context.diagnostics);
-  if (axes.empty()) return std::nullopt;
+  if (context.diagnostics.error_count() != before) return std::nullopt;
+  if (axes.empty()) {
+    if (axes_key != nullptr && axes_key->node->is_sequence() && axes_key->node->items.empty()) {
+      context.error(axes_key->node->mark, "empty-value",
+                    fmt::format("`{}: []` leaves nothing to control: name some, or remove the task "
+                                "with `{}: off`",
+                                axes_key->key, item.name));
+    }
+    return std::nullopt;
+  }
   const std::vector<std::string> all = all_axes(context, *type);
   std::vector<std::string> names;
   std::vector<AxisSpec> specs;
@@ -196,6 +206,11 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
                                           type->angular ? core::kRateSquared : core::kAcceleration);
   spec.integral_limit =
       compile_limit(context, item, "integral_limit", type->position() * core::kTime);
+  const bool integrates =
+      std::any_of(specs.begin(), specs.end(), [](const AxisSpec& axis) { return axis.ki >= 0; });
+  if (const DraftKey* limit = item.find("integral_limit"); limit != nullptr && !integrates) {
+    context.warning(limit->node->mark, "no-effect", "`integral_limit` without ki has no effect");
+  }
   compile_reference(context, item, *type, names, spec, specs);
   spec.instance = find_instance(context, item, spec.type, spec.point);
   spec.axes = {static_cast<int>(context.behavior.axes.size()), static_cast<int>(specs.size())};
@@ -206,7 +221,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
 std::optional<InternalSpec> compile_internal(LoadContext& context, const DraftItem& item) {
   core::YamlNode map;
   map.kind = core::YamlNode::Kind::map;
-  for (const DraftKey& key : item.keys) map.entries.push_back({key.key, key.node->mark, false, {}});
+  for (const DraftKey& key : item.keys) map.entries.push_back({key.key, key.mark, false, {}});
   core::check_keys(map, kInternalKeys, context.diagnostics);
   const DraftKey* between = item.find("between");
   const DraftKey* reference = item.find("reference");
@@ -228,6 +243,10 @@ std::optional<InternalSpec> compile_internal(LoadContext& context, const DraftIt
   spec.contact_a = context.require_contact(between->node->items[0]);
   spec.contact_b = context.require_contact(between->node->items[1]);
   if (spec.contact_a < 0 || spec.contact_b < 0) return std::nullopt;
+  if (spec.contact_a == spec.contact_b) {
+    context.error(between->node->items[1].mark, "same-foot",
+                  "an internal force acts between two feet, not one");
+  }
   ValueScope scope;
   scope.state = reference->owner;
   spec.mark = reference->node->mark;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -47,6 +48,13 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+// Whether two words differ in nothing but capitals.
+bool same_letters(std::string_view a, std::string_view b) {
+  const auto small = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return small(x) == small(y); });
+}
+
 }  // namespace
 
 int Diagnostics::add_file(const std::string& path) {
@@ -56,12 +64,20 @@ int Diagnostics::add_file(const std::string& path) {
   return static_cast<int>(files_.size()) - 1;
 }
 
+bool Diagnostics::is_new(Mark mark, std::string_view id, const std::string& text) {
+  if (silent_.contains({mark.file, mark.line, mark.column})) return false;
+  return said_.insert(fmt::format("{} {} {} {} {}", mark.file, mark.line, mark.column, id, text))
+      .second;
+}
+
 void Diagnostics::error(Mark mark, std::string_view id, std::string text) {
+  if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::error, mark, std::string(id), std::move(text)});
   ++error_count_;
 }
 
 void Diagnostics::warning(Mark mark, std::string_view id, std::string text) {
+  if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::warning, mark, std::string(id), std::move(text)});
 }
 
@@ -73,7 +89,6 @@ std::string Diagnostics::to_string() const {
            std::tie(b->mark.file, b->mark.line, b->mark.column);
   });
   std::string out;
-  std::string previous;
   for (const Diagnostic* item : sorted) {
     std::string line;
     if (item->mark.file >= 0 && item->mark.file < static_cast<int>(files_.size())) {
@@ -82,10 +97,7 @@ std::string Diagnostics::to_string() const {
       line += " ";
     }
     line += item->severity == Severity::error ? "error: " : "warning: ";
-    line += on_one_line(item->text) + "\n";
-    // An anchor read through several aliases reports the same problem several times.
-    if (line != previous) out += line;
-    previous = std::move(line);
+    out += line + on_one_line(item->text) + "\n";
   }
   return out;
 }
@@ -93,6 +105,9 @@ std::string Diagnostics::to_string() const {
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLongestWord = 100;  // longer is not a typing mistake
   if (word.size() > kLongestWord) return {};
+  for (const std::string& candidate : candidates) {
+    if (same_letters(word, candidate)) return candidate;
+  }
   const int length = static_cast<int>(word.size());
   // A word of one letter is near to every other one: no guess is better than that.
   int best = std::min(std::max(1, length / 3), length - 1);
@@ -111,6 +126,16 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string nearest = nearest_name(word, candidates);
   return nearest.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", nearest);
+}
+
+std::string did_you_mean_or_list(std::string_view word,
+                                 const std::vector<std::string>& candidates) {
+  constexpr std::size_t kFew = 10;
+  const std::string hint = did_you_mean(word, candidates);
+  if (!hint.empty() || candidates.size() > kFew) return hint;
+  if (candidates.empty()) return " (there is none)";
+  return fmt::format(" (there {} {})", candidates.size() == 1 ? "is" : "are",
+                     fmt::join(candidates, ", "));
 }
 
 }  // namespace footfall::core
