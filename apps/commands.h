@@ -25,6 +25,9 @@ void add_check_command(CLI::App& app, int& exit_code);
 void add_trace_command(CLI::App& app, int& exit_code);
 void add_signals_command(CLI::App& app, int& exit_code);
 void add_graph_command(CLI::App& app, int& exit_code);
+void add_fmt_command(CLI::App& app, int& exit_code);
+void add_config_command(CLI::App& app, int& exit_code);
+void add_new_command(CLI::App& app, int& exit_code);
 
 // Folders that hold robots/, behaviors/library/ and sim/worlds/: the working folder, those of
 // FOOTFALL_PATH (colons between), the source tree, the installed data.
