@@ -81,23 +81,31 @@ void Diagnostics::warning(Mark mark, std::string_view id, std::string text) {
   items_.push_back({Severity::warning, mark, std::string(id), std::move(text)});
 }
 
-std::string Diagnostics::to_string() const {
-  std::vector<const Diagnostic*> sorted;
-  for (const Diagnostic& item : items_) sorted.push_back(&item);
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic* a, const Diagnostic* b) {
-    return std::tie(a->mark.file, a->mark.line, a->mark.column) <
-           std::tie(b->mark.file, b->mark.line, b->mark.column);
+std::vector<Diagnostic> Diagnostics::sorted() const {
+  const auto key = [](const Diagnostic& item) {
+    return std::tie(item.mark.file, item.mark.line, item.mark.column);
+  };
+  std::vector<Diagnostic> out = items_;
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  // An anchor read through several aliases reports the same problem several times.
+  const auto again = std::unique(out.begin(), out.end(), [&](const auto& a, const auto& b) {
+    return key(a) == key(b) && a.severity == b.severity && a.text == b.text;
   });
+  out.erase(again, out.end());
+  return out;
+}
+
+std::string Diagnostics::to_string() const {
   std::string out;
-  for (const Diagnostic* item : sorted) {
-    std::string line;
-    if (item->mark.file >= 0 && item->mark.file < static_cast<int>(files_.size())) {
-      line += on_one_line(file(item->mark.file)) + ":";
-      if (item->mark.line > 0) line += fmt::format("{}:{}:", item->mark.line, item->mark.column);
-      line += " ";
+  for (const Diagnostic& item : sorted()) {
+    if (item.mark.file >= 0 && item.mark.file < static_cast<int>(files_.size())) {
+      out += on_one_line(file(item.mark.file)) + ":";
+      if (item.mark.line > 0) out += fmt::format("{}:{}:", item.mark.line, item.mark.column);
+      out += " ";
     }
-    line += item->severity == Severity::error ? "error: " : "warning: ";
-    out += line + on_one_line(item->text) + "\n";
+    out += item.severity == Severity::error ? "error: " : "warning: ";
+    out += on_one_line(item.text) + "\n";
   }
   return out;
 }

@@ -42,6 +42,8 @@ class Diagnostics {
   int error_count() const { return error_count_; }
   const std::vector<Diagnostic>& all() const { return items_; }
   const std::string& file(int index) const { return files_[static_cast<std::size_t>(index)]; }
+  // In order of file and place; a problem that is reported again at its place is left out.
+  std::vector<Diagnostic> sorted() const;
   // `file:line:col: error: text`, one a line, in order of file and place.
   std::string to_string() const;
 
