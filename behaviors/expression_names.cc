@@ -1,6 +1,7 @@
 // What stands between the operators: numbers, names, functions.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "behaviors/expression_parser.h"
@@ -53,6 +54,7 @@ Operand ExpressionParser::parse_primary() {
 
 Operand ExpressionParser::parse_call(const Token& name) {
   if (name.text == "in") return parse_in();
+  if (const auto reduction = parse_reduction(name)) return *reduction;
   for (const FunctionInfo& function : kFunctions) {
     if (function.name == name.text) return parse_function(name, function);
   }
@@ -60,6 +62,24 @@ Operand ExpressionParser::parse_call(const Token& name) {
   for (const FunctionInfo& function : kFunctions) names.emplace_back(function.name);
   fail(name, "unknown-function",
        fmt::format("unknown function '{}'{}", name.text, core::did_you_mean(name.text, names)));
+}
+
+// `rms(task.height.error)`: one of the four names and a lone signal.
+std::optional<Operand> ExpressionParser::parse_reduction(const Token& name) {
+  constexpr std::array<std::string_view, 4> kReductions = {"max", "mean", "rms", "count"};
+  if (!scope_.find_reduction || at_ + 2 >= tokens_.size() || scope_.signals == nullptr ||
+      std::find(kReductions.begin(), kReductions.end(), name.text) == kReductions.end()) {
+    return std::nullopt;
+  }
+  const Token& of = tokens_[at_ + 1];
+  const int signal = of.kind == Token::Kind::name ? scope_.signals->find(of.text) : -1;
+  if (signal < 0 || tokens_[at_ + 2].text != ")") return std::nullopt;
+  const int index = scope_.find_reduction(name.text, signal);
+  if (index < 0) fail(name, "unknown-function", fmt::format("no {}() of this signal", name.text));
+  at_ += 3;
+  emit(Op::signal, index);
+  if (name.text == "count") return Operand{};
+  return Operand{scope_.signals->info(signal).dimension, false, false, 0.0};
 }
 
 Operand ExpressionParser::parse_in() {

@@ -26,7 +26,8 @@ void load_robot(LoadContext& context, const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const std::string beside = folder.empty() ? name : folder + "/" + name;
   std::string file = model::find_robot_file(name, search);
-  if (file.empty() && std::filesystem::is_regular_file(beside)) file = beside;
+  std::error_code unreadable;  // a name too long for a path, a folder closed to us
+  if (file.empty() && std::filesystem::is_regular_file(beside, unreadable)) file = beside;
   if (file.empty()) {
     context.error(node == nullptr ? core::Mark{} : node->mark, "unknown-robot",
                   fmt::format("unknown robot '{}': no such file, and no robots/{}/robot.yaml in {}",

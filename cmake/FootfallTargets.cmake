@@ -8,12 +8,16 @@ function(footfall_set_warnings target)
     $<$<BOOL:${FOOTFALL_WERROR}>:-Werror>)
 endfunction()
 
-# AddressSanitizer or UndefinedBehaviorSanitizer, as FOOTFALL_SANITIZE says.
+# AddressSanitizer or UndefinedBehaviorSanitizer, as FOOTFALL_SANITIZE says; for fuzzing both, and coverage.
 function(footfall_set_sanitizers target)
   if(FOOTFALL_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${FOOTFALL_SANITIZE} -fno-omit-frame-pointer
+    set(kinds ${FOOTFALL_SANITIZE})
+    if(FOOTFALL_FUZZ)
+      string(APPEND kinds ",undefined,fuzzer-no-link")
+    endif()
+    target_compile_options(${target} PRIVATE -fsanitize=${kinds} -fno-omit-frame-pointer
       -fno-sanitize-recover=all)
-    target_link_options(${target} PUBLIC -fsanitize=${FOOTFALL_SANITIZE})
+    target_link_options(${target} PUBLIC -fsanitize=${kinds})
   endif()
 endfunction()
 

@@ -26,7 +26,7 @@ namespace footfall::core {
 
 namespace {
 
-constexpr std::size_t kMaxFileBytes = 8u << 20;
+constexpr std::size_t kMaxFileBytes = 4u << 20;
 constexpr std::size_t kMaxExpandedBytes = 64u << 20;  // text of all scalars after alias expansion
 constexpr int kMaxNodes = 200'000;
 constexpr int kMaxDepth = 100;
@@ -280,7 +280,7 @@ Mark quote_after(std::string_view text, std::size_t from, int file) {
 YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
   const Mark whole{file, 0, 0};
   if (text.size() > kMaxFileBytes) {
-    diagnostics.error(whole, "too-large", "larger than 8 MB");
+    diagnostics.error(whole, "too-large", "larger than 4 MB");
     return {};
   }
   if (!check_text(text, file, diagnostics)) return {};

@@ -3,7 +3,7 @@
 // Scalars stay text (YAML 1.2 meaning is given by the reader: only `true`/`false` are booleans).
 // Refused here, with a place: duplicate keys, tabs as indentation, `<<`, several documents, invalid
 // UTF-8, nesting deeper than 100, more than 200000 nodes after alias expansion, self-references,
-// files over 8 MB.
+// files over 4 MB.
 #pragma once
 
 #include <string>

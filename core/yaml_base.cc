@@ -107,7 +107,7 @@ YamlNode resolve(YamlNode root, const std::string& path, std::vector<std::string
     return {};
   }
   std::error_code error;
-  if (!fs::exists(base_path, error)) {
+  if (!fs::is_regular_file(base_path, error)) {  // a pipe would be waited for
     diagnostics.error(place, "base", fmt::format("no file '{}'", base_path));
     return {};
   }

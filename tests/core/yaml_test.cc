@@ -162,7 +162,7 @@ TEST(YamlTest, AQuoteThatIsNeverClosedIsAnErrorWhereItOpens) {
 
 TEST(YamlTest, AHugeTextIsRefused) {
   EXPECT_EQ(problems("a: " + std::string((8u << 20) + 1, 'x')),
-            "f.yaml: error: larger than 8 MB\n");
+            "f.yaml: error: larger than 4 MB\n");
 }
 
 // Files in a folder of their own, removed at the end.
