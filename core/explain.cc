@@ -16,7 +16,7 @@ struct Expected {
 
 Expected behind(const KeySpec& key) {
   for (const ValueSpec& value : key.values) {
-    if (value.form == ValueForm::by_name && value.kind != ValueKind::none) return {nullptr, &value};
+    if (value.named && value.kind != ValueKind::none) return {nullptr, &value};
     if (value.map != nullptr) return {value.map, nullptr};
   }
   return {};
