@@ -23,11 +23,11 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 TEST(PhysicsRank, YawOnASinglePointFootIsRefusedWhereItIsWritten) {
   const std::string text =
       standing("[right_foot]", height() + attitude("[yaw, pitch, roll]") + swing());
-  EXPECT_THAT(physics(text),
-              StartsWith(place_of(text, "yaw") +
-                         "error: task 'attitude' cannot meet 'yaw' on right_foot alone: no "
-                         "contact can produce it"));
-  EXPECT_EQ(std::count(physics(text).begin(), physics(text).end(), '\n'), 1);
+  const std::string said = physics(text);
+  EXPECT_THAT(said, StartsWith(place_of(text, "yaw") +
+                               "error: task 'attitude' cannot meet 'yaw' on right_foot alone: no "
+                               "contact can produce it"));
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
 }
 
 TEST(PhysicsRank, YawIsRefusedAlsoWhereTheLegInTheAirCouldLendIt) {

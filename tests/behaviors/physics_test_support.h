@@ -1,6 +1,7 @@
 // Short ways to ask the physics checks about a behavior given as text.
 #pragma once
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -58,7 +59,8 @@ inline std::string single_tasks() { return height() + attitude("[pitch, roll]") 
 inline behaviors::LoadOptions with_contacts(const std::string& folder, const std::string& right,
                                             const std::string& left) {
   const std::string path = folder + "/other.yaml";
-  std::ofstream(path) << "robot: 1\nbase: " << FOOTFALL_SOURCE_DIR
+  std::ofstream(path) << "robot: 1\nbase: "
+                      << std::filesystem::absolute(FOOTFALL_SOURCE_DIR).string()
                       << "/robots/hume/robot.yaml\ncontacts:\n  right_foot: " << right
                       << "\n  left_foot: " << left << "\n";
   behaviors::LoadOptions options = options_for_tests();
