@@ -48,7 +48,9 @@ TEST(YamlFormat, BreaksALineThatIsTooLongAtTheOutermostCommas) {
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count) {
     EXPECT_LE(line.size(), 120U);
-    if (count > 0) EXPECT_TRUE(line.starts_with("       [long_name")) << line;
+    if (count > 0) {
+      EXPECT_TRUE(line.starts_with("       [long_name")) << line;
+    }
   }
   EXPECT_EQ(count, 3);  // 7 items in 119 bytes, then 6 and 6
   EXPECT_EQ(formatted(text), text);
