@@ -115,8 +115,8 @@ Operand ExpressionParser::parse_function(const Token& name, const FunctionInfo& 
   }
   if (count < function.arguments || !is(")")) {
     fail(name, "bad-expression",
-         fmt::format("{}() expects {} argument{}", text, function.arguments,
-                     function.arguments == 1 ? "" : "s"));
+         fmt::format("{}() expects {} argument{}{}", text, function.arguments,
+                     function.arguments == 1 ? "" : "s", any ? " or more" : ""));
   }
   take();
   if (!any) emit(function.op);
@@ -230,6 +230,11 @@ void ExpressionParser::unknown_name(const Token& token) {
           token, "unknown-signal",
           fmt::format("unknown signal '{}': a parameter is written '${}'", token.text, token.text));
     }
+  }
+  if (core::parse_unit(token.text)) {
+    fail(token, "unknown-signal",
+         fmt::format("unknown signal '{}': a unit stands right behind its number, as in '2 1/s'",
+                     token.text));
   }
   fail(token, "unknown-signal",
        fmt::format("unknown signal '{}'{}", token.text, core::did_you_mean(token.text, names)));

@@ -242,7 +242,7 @@ int compile_expression(std::string_view text, const ExpressionScope& scope,
     return -1;
   }
   if (parser.code.size() > kMaxSteps) {
-    error = {tokens->front().offset, "too-long",
+    error = {tokens->front().offset, "too-large",
              fmt::format("expression of more than {} values and operations", kMaxSteps)};
     return -1;
   }

@@ -97,6 +97,22 @@ bool read_symbol(std::string_view text, std::size_t& at, Token& token) {
   return true;
 }
 
+// What another language's sign is here.
+std::string_view instead_of(char sign) {
+  switch (sign) {
+    case '=':
+      return ": equal is '=='";
+    case '&':
+      return ": write 'and'";
+    case '|':
+      return ": write 'or'";
+    case '!':
+      return ": write 'not'";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
 
 std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionError& error) {
@@ -121,11 +137,12 @@ std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionErro
       ++at;
       read_name(text, at, token.text);
     } else if (!read_symbol(text, at, token)) {
-      error = {token.offset, "bad-character", fmt::format("unexpected '{}' in an expression", c)};
+      error = {token.offset, "bad-character",
+               fmt::format("unexpected '{}' in an expression{}", c, instead_of(c))};
       return std::nullopt;
     }
     if (tokens.size() >= kMaxTokens) {
-      error = {token.offset, "too-long",
+      error = {token.offset, "too-large",
                fmt::format("an expression of more than {} words and signs", kMaxTokens)};
       return std::nullopt;
     }

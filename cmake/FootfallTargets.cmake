@@ -4,7 +4,7 @@
 function(footfall_set_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
-    -Wno-restrict  # g++ 12 reports std::string operator+ falsely (GCC bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # g++ 12 reports std::string operator+ falsely (GCC bug 105651)
     $<$<BOOL:${FOOTFALL_WERROR}>:-Werror>)
 endfunction()
 

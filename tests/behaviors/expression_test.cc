@@ -169,6 +169,14 @@ TEST_F(Expression, SyntaxErrorsSayWhatWasExpected) {
   EXPECT_EQ(error_of("1 # 2"), "2: unexpected '#' in an expression");
   EXPECT_EQ(error_of("clamp(1, 2)"), "0: clamp() expects 3 arguments");
 }
+TEST_F(Expression, SignsOfOtherLanguagesAreNamedWithTheirWordHere) {
+  EXPECT_EQ(error_of("contact.left = 1"), "13: unexpected '=' in an expression: equal is '=='");
+  EXPECT_EQ(error_of("1 && 2"), "2: unexpected '&' in an expression: write 'and'");
+  EXPECT_EQ(error_of("!contact.left"), "0: unexpected '!' in an expression: write 'not'");
+  EXPECT_EQ(error_of("1/s"),
+            "2: unknown signal 's': a unit stands right behind its number, as in '2 1/s'");
+  EXPECT_EQ(error_of("max(1)"), "0: max() expects 2 arguments or more");
+}
 TEST_F(Expression, AVectorParameterNeedsAComponent) {
   EXPECT_EQ(error_of("$goal + 1"), "0: parameter 'goal' has 2 values: write $goal.x");
   EXPECT_EQ(error_of("$goal.z"), "0: parameter 'goal' has no component 'z'");
