@@ -85,7 +85,7 @@ class SchemaWriter {
     Json lists = Json::array();
     add_properties(table, part, properties, lists);
     out["properties"] = std::move(properties);
-    if (part && !lists.empty()) {
+    if ((part || table.part) && !lists.empty()) {
       std::string names;
       for (const auto& name : lists) names += (names.empty() ? "" : "|") + name.get<std::string>();
       out["patternProperties"] = {{fmt::format("^({})\\+$", names), {{"type", "array"}}}};

@@ -7,7 +7,7 @@
 
 #include "behaviors/language.h"
 #include "tests/behaviors/behavior_test_support.h"
-#include "tests/support/key_uses.h"
+#include "tests/keys/key_uses.h"
 
 namespace footfall::tests {
 namespace {
@@ -20,12 +20,12 @@ std::string read(const std::string& path) {
   return text.str();
 }
 
-const std::string kEveryKey = read("/tests/behaviors/every_key.yaml");
+const std::string kEveryKey = read("/tests/keys/behavior.yaml");
 
 // What loading the text reports, as if it stood in the file's folder (there is a script beside it).
 std::string said_of(const std::string& text) {
   core::Diagnostics diagnostics;
-  behaviors::load_behavior_text(text, std::string(FOOTFALL_SOURCE_DIR) + "/tests/behaviors/b.yaml",
+  behaviors::load_behavior_text(text, std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/b.yaml",
                                 options_for_tests(), diagnostics);
   return diagnostics.to_string();
 }

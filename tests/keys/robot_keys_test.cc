@@ -8,12 +8,12 @@
 #include <sstream>
 
 #include "model/robot_description.h"
-#include "tests/support/key_uses.h"
+#include "tests/keys/key_uses.h"
 
 namespace footfall::tests {
 namespace {
 
-const std::string kPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/model/every_key.yaml";
+const std::string kPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/robot.yaml";
 
 TEST(EveryKey, OfARobotIsInAFileThatLoads) {
   core::Diagnostics diagnostics;
@@ -28,7 +28,7 @@ TEST(EveryKey, OfARobotIsReadSoThatAWrongValueIsRefused) {
   const core::YamlNode root = core::load_yaml_file(kPath, diagnostics);
   std::ostringstream text;
   text << std::ifstream(kPath).rdbuf();
-  const std::string folder = testing::TempDir() + "/tests/model";
+  const std::string folder = testing::TempDir() + "/tests/keys";
   std::filesystem::create_directories(folder);
   std::filesystem::copy(
       std::string(FOOTFALL_SOURCE_DIR) + "/robots", testing::TempDir() + "/robots",

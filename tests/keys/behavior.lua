@@ -1,4 +1,4 @@
--- For every_key.yaml: a function to call.
+-- For behavior.yaml: a function to call.
 function greet()
   footfall.log("goes")
 end

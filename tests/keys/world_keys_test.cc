@@ -7,12 +7,12 @@
 #include <sstream>
 
 #include "sim/world_description.h"
-#include "tests/support/key_uses.h"
+#include "tests/keys/key_uses.h"
 
 namespace footfall::tests {
 namespace {
 
-const std::string kPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/sim/every_key.yaml";
+const std::string kPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/world.yaml";
 
 TEST(EveryKey, OfAWorldIsInAFileThatLoads) {
   core::Diagnostics diagnostics;
