@@ -161,7 +161,11 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
   }
   if (name == states[0].path) return 0;
   std::vector<std::string> names;
-  for (const StateInfo& info : states) names.push_back(info.name);
+  // Guessing compares with every state: not for thousands of names that fit nothing.
+  constexpr int kGuesses = 100;
+  if (diagnostics.error_count() < kGuesses) {
+    for (const StateInfo& info : states) names.push_back(info.name);
+  }
   why = fmt::format("unknown state '{}'{}", name, core::did_you_mean(name, names));
   return -1;
 }

@@ -47,7 +47,7 @@ void read_kappa_parameter(LoadContext& context, const core::YamlNode& node, Plan
   }
   const ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
   if (info.size > 2) {
-    context.error(node.mark, "bad-size",
+    context.error(node.mark, "size",
                   fmt::format("kappa has 1 or 2 values, '{}' has {}", name, info.size));
     return;
   }

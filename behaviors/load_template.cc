@@ -172,7 +172,10 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
   Arguments image;
   for (const auto& [key, value] : *arguments) image.emplace_back(key, image_of(context, value));
   const std::string first = arguments->front().second.scalar;
-  const std::string second = image.front().second.scalar;
+  std::string second = image.front().second.scalar;
+  // Without its robot, which was reported, nothing has an image: any name does to look at the rest.
+  if (context.behavior.has_robot && context.behavior.robot.joints.empty())
+    second = first + "_image";
   if (first == second) {
     context.error(arguments->front().second.mark, "mirror",
                   fmt::format("'{}' has no mirror image: name it in the robot's symmetry", first));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -122,6 +123,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
   std::string nearest;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongestWord) continue;
+    if (std::abs(static_cast<int>(candidate.size()) - length) > best) continue;
     const int distance = edit_distance(word, candidate);
     if (distance < best || (distance == best && nearest.empty())) {
       best = distance;

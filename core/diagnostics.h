@@ -41,6 +41,7 @@ class Diagnostics {
   bool has_errors() const { return error_count_ > 0; }
   int error_count() const { return error_count_; }
   const std::vector<Diagnostic>& all() const { return items_; }
+  int file_count() const { return static_cast<int>(files_.size()); }
   const std::string& file(int index) const { return files_[static_cast<std::size_t>(index)]; }
   // In order of file and place; a problem that is reported again at its place is left out.
   std::vector<Diagnostic> sorted() const;

@@ -371,8 +371,9 @@ std::optional<std::vector<double>> read_vector(const YamlNode& node, Dimension e
   } else if (node.is_map()) {
     const int errors_before = diagnostics.error_count();
     if (node.entries.empty()) {
-      diagnostics.error(node.mark, "empty-value",
-                        fmt::format("expected a value for at least one of {}", fmt::join(axes, ", ")));
+      diagnostics.error(
+          node.mark, "empty-value",
+          fmt::format("expected a value for at least one of {}", fmt::join(axes, ", ")));
     }
     check_keys(node, axes, diagnostics);
     good = diagnostics.error_count() == errors_before;
