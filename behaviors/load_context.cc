@@ -163,7 +163,7 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
   std::vector<std::string> names;
   // Guessing compares with every state: not for thousands of names that fit nothing.
   constexpr int kGuesses = 100;
-  if (diagnostics.error_count() < kGuesses) {
+  if (++state_guesses <= kGuesses) {
     for (const StateInfo& info : states) names.push_back(info.name);
   }
   why = fmt::format("unknown state '{}'{}", name, core::did_you_mean(name, names));

@@ -76,7 +76,8 @@ struct LoadContext {
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::vector<std::string_view> task_type_of_name;  // by Behavior::task_names
   int expanded_states = 0;
-  bool states_missing = false;  // after an error in a template: a name unknown may be one of them
+  mutable int state_guesses = 0;  // names of states that were looked for in vain
+  bool states_missing = false;    // after an error in a template: a name unknown may be one of them
 
   void error(core::Mark mark, std::string_view id, std::string text);
   void warning(core::Mark mark, std::string_view id, std::string text);
