@@ -27,6 +27,7 @@ struct ReferenceSpec {
   Shape shape = Shape::hold;
   int owner = 0;
   int over = -1;  // expression of a time
+  core::Mark over_mark;
   // Part of the trajectory's time during which it follows a changing `to`; 0: never. Following to
   // the very end would ask for accelerations without bound. `retarget: true` is 80 %.
   double retarget = 0.0;
@@ -81,6 +82,7 @@ struct TorqueLoopTable {
 
 // One `invoke` of a planner.
 struct InvokeInfo {
+  core::Mark at_mark;  // of when it is asked
   int state = 0;
   int planner = 0;
   int at = -1;                  // expression of a time in the state; -1: at_fraction of `after`

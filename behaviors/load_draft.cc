@@ -27,6 +27,11 @@ void report_clash(LoadContext& context, core::Mark mark, const std::string& what
                             states[static_cast<std::size_t>(b)].path));
 }
 
+bool same_names(const core::YamlNode& a, const core::YamlNode& b) {
+  return std::is_permutation(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(),
+                             [](const auto& x, const auto& y) { return x.scalar == y.scalar; });
+}
+
 // Lays the entries of a map by name over the items; `stack` is not empty for the stack's own.
 void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::YamlNode& map,
               int owner, const std::string& stack, const char* what) {
@@ -77,14 +82,21 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
   }
 }
 
-void lay_torque_loops(Draft& draft, const core::YamlNode& map, int owner) {
+// Items of a stack have no owner: what states say goes over them.
+void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& map, int owner) {
   for (const core::YamlEntry& entry : map.entries) {
     auto item = std::find_if(draft.torque_loops.begin(), draft.torque_loops.end(),
                              [&](const DraftItem& other) { return other.name == entry.key; });
+    if (item != draft.torque_loops.end() && item->owner >= 0 &&
+        parallel(context, item->owner, owner)) {
+      report_clash(context, entry.key_mark, fmt::format("torque_loop '{}'", entry.key), item->owner,
+                   owner);
+    }
     if (item == draft.torque_loops.end()) {
       draft.torque_loops.push_back({entry.key, entry.key_mark, owner, {}, {}});
       item = draft.torque_loops.end() - 1;
     }
+    item->owner = owner;
     item->keys = {{"table", &entry.value, owner, entry.key_mark}};
   }
 }
@@ -93,7 +105,7 @@ void lay_torque_loops(Draft& draft, const core::YamlNode& map, int owner) {
 void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, int owner,
               const std::string& stack) {
   if (const auto* contacts = keys.find("contacts")) {
-    if (draft.contacts != nullptr && stack.empty() &&
+    if (draft.contacts != nullptr && stack.empty() && !same_names(*draft.contacts, *contacts) &&
         parallel(context, draft.contacts_owner, owner)) {
       report_clash(context, contacts->mark, "`contacts`", draft.contacts_owner, owner);
     }
@@ -109,7 +121,7 @@ void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, in
   if (const auto* gains = keys.find("gains")) draft.gains.push_back({gains, owner});
   if (const auto* loops = keys.find("torque_loop")) {
     if (core::expect_map(*loops, "tables by foot or group", context.diagnostics)) {
-      lay_torque_loops(draft, *loops, owner);
+      lay_torque_loops(context, draft, *loops, owner);
     }
   }
 }
@@ -178,6 +190,7 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
       draft.mark = stack->mark;
       for (DraftItem& item : draft.tasks) item.owner = 0;  // no state's word yet
       for (DraftItem& item : draft.internals) item.owner = 0;
+      for (DraftItem& item : draft.torque_loops) item.owner = -1;
       draft.contacts_owner = 0;
     }
   }
@@ -185,6 +198,9 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
     const core::YamlNode& keys = keys_of(context, s);
     lay_keys(context, draft, keys, s, "");
     if (const auto* transition = keys.find("contact_transition"); transition && toward == nullptr) {
+      if (draft.transition != nullptr && parallel(context, draft.transition_owner, s)) {
+        report_clash(context, transition->mark, "`contact_transition`", draft.transition_owner, s);
+      }
       draft.transition = transition;
       draft.transition_owner = s;
     }

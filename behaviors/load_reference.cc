@@ -186,6 +186,7 @@ void compile_trajectory(LoadContext& context, const core::YamlNode& map, AxesSco
   ValueScope scope;
   scope.state = axes.owner;
   reference.over = context.compile_time(*over, scope);
+  reference.over_mark = over->mark;
   set_values(*to, compile_axes(context, *to, axes, true), out);
   if (end_velocity != nullptr) {
     if (*shape == Shape::cosine) {
