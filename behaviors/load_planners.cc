@@ -111,7 +111,7 @@ void read_goal(LoadContext& context, const core::YamlNode& map, PlannerInfo& pla
                               core::did_you_mean(name, context.parameter_names())));
     return;
   }
-  const ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
+  ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
   if (info.size != 2) {
     context.error(node->mark, "size",
                   fmt::format("a goal has 2 values, '{}' has {}", name, info.size));
@@ -120,6 +120,8 @@ void read_goal(LoadContext& context, const core::YamlNode& map, PlannerInfo& pla
                   fmt::format("expected a length, got {}", core::dimension_name(info.dimension)));
   } else {
     planner.goal_slot = info.slot;
+    info.dimension = core::kLength;  // `[0, 0]` is a place from here on
+    info.bare = false;
   }
 }
 

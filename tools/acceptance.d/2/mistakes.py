@@ -6,7 +6,7 @@ that is accepted change what the robot does?
 
 A mistake is one of: a letter of a word dropped, doubled, swapped with the next or replaced; a token dropped, doubled or
 swapped with the next one; a unit replaced by another; a word replaced by another word of the file; a line indented by
-one step more or less; a line dropped. Tokens are words, numbers with their unit, and punctuation, outside comments and
+one step more or less; a line of one key and its value dropped. Tokens are words, numbers with their unit, and punctuation, outside comments and
 free text (`doc:`, `log:`, `reason:`, texts in `events:`). Kinds are drawn with equal chances, files by their number of
 tokens.
 

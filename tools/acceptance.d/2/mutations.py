@@ -100,10 +100,13 @@ class Mutator:
         self.tokens = tokens(text)
         self.words = [t for t in self.tokens if t.kind == "word"]
         self.quantities = [t for t in self.tokens if t.kind == "number" and unit_of(t)]
-        self.kinds = KINDS if self.quantities else [k for k in KINDS if k != "unit"]
         self.names = sorted({t.text for t in self.words})
         self.lines = text.split("\n")
         self.code_lines = sorted({t.line for t in self.tokens})
+        # Of one key and its value: to drop more than that is no slip of one token.
+        self.short_lines = [n for n in self.code_lines if sum(t.line == n for t in self.tokens) <= 3]
+        missing = {"unit": not self.quantities, "line": not self.short_lines}
+        self.kinds = [kind for kind in KINDS if not missing.get(kind)]
 
     def draw(self, rng):
         return getattr(self, "_" + rng.choice(self.kinds))(rng)
@@ -150,7 +153,7 @@ class Mutator:
         return self._lines("indent", number, [new], "indented " + ("more" if more else "less"))
 
     def _line(self, rng):
-        return self._lines("line", rng.choice(self.code_lines), [], "dropped")
+        return self._lines("line", rng.choice(self.short_lines), [], "dropped")
 
     def _lines(self, kind, number, new, what):
         text = "\n".join(self.lines[:number] + new + self.lines[number + 1:])
