@@ -36,9 +36,11 @@ struct ContactDescription {
   double radius = 0.0;  // m; the contact point is centre - radius * ground normal
 };
 
+// A named place with a frame: a site of the model with its orientation, or a body's own frame.
 struct PointDescription {
   std::string name;
   std::string site;
+  std::string body{};  // instead of a site
 };
 
 struct JointGroup {

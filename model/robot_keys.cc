@@ -71,7 +71,8 @@ constexpr KeySpec kContactRows[] = {
 };
 
 constexpr KeySpec kPointRows[] = {
-    key("site", text_of("a site's name"), "its place in the model").required(),
+    key("site", text_of("a site's name"), "its place in the model, and its frame's orientation"),
+    key("body", text_of("a body's name"), "instead of a site: the body's own frame"),
 };
 
 constexpr KeySpec kSensorsRows[] = {
