@@ -109,9 +109,10 @@ struct ExpressionScope {
   int state = -1;  // whose `t` it is; -1: `t` is not available
   // Index of a state by its (partial) name; -1 and a reason otherwise.
   std::function<int(std::string_view name, std::string& why)> find_state;
-  const std::vector<std::string>* entry_axes = nullptr;  // names of `entry.AXIS`
-  int entry_axis = -1;                                   // what a lone `entry` is
-  core::Dimension entry_dimension;                       // of the task's axes
+  const std::vector<std::string>* entry_axes = nullptr;            // names of `entry.AXIS`
+  int entry_axis = -1;                                             // what a lone `entry` is
+  core::Dimension entry_dimension;                                 // of the task's axes
+  const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
 };
 
 // Where and why an expression was refused; `offset` counts bytes from the start of the text.

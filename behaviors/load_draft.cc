@@ -27,9 +27,41 @@ void report_clash(LoadContext& context, core::Mark mark, const std::string& what
                             states[static_cast<std::size_t>(b)].path));
 }
 
-// Lays the entries of a map by name over the items; `stack` is not empty for the stack's own.
+// Whose word is being laid: a state's, or a stack's (`stack` is not empty) that the state names.
+struct Layer {
+  int owner = 0;
+  std::string stack;
+  int index = 0;
+};
+
+std::string layer_name(const LoadContext& context, const Layer& layer) {
+  return layer.stack.empty() ? context.behavior.states[static_cast<std::size_t>(layer.owner)].path
+                             : layer.stack;
+}
+
+// The keys of one task or internal force over what it has.
+void lay_item(const LoadContext& context, DraftItem& item, const core::YamlNode& map,
+              const Layer& layer) {
+  item.owner = layer.owner;
+  item.layer = layer.index;
+  for (const core::YamlEntry& key : map.entries) {
+    const auto same = [&](const DraftKey& other) { return other.key == key.key; };
+    auto found = std::find_if(item.keys.begin(), item.keys.end(), same);
+    if (found == item.keys.end()) found = item.keys.insert(found, DraftKey{key.key, nullptr, 0});
+    found->node = &key.value;
+    found->owner = layer.owner;
+    if (key.key == "gains") {
+      item.gains.push_back(
+          {&key.value, layer.owner, layer.index, true, false, layer_name(context, layer)});
+    }
+  }
+}
+
+// Lays the entries of a map by name over the items.
 void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::YamlNode& map,
-              int owner, const std::string& stack, const char* what) {
+              const Layer& layer, const char* what) {
+  const int owner = layer.owner;
+  const std::string& stack = layer.stack;
   if (!core::expect_map(map, fmt::format("{}s by name", what), context.diagnostics)) return;
   for (const core::YamlEntry& entry : map.entries) {
     auto item = std::find_if(items.begin(), items.end(),
@@ -55,59 +87,90 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
       continue;
     }
     if (item == items.end()) {
-      items.push_back({entry.key, entry.key_mark, owner, {}, {}});
+      items.push_back({entry.key, entry.key_mark, owner, {}, {}, layer.index});
       item = items.end() - 1;
     }
-    item->owner = owner;
-    for (const core::YamlEntry& key : entry.value.entries) {
-      const auto same = [&](const DraftKey& other) { return other.key == key.key; };
-      auto found = std::find_if(item->keys.begin(), item->keys.end(), same);
-      if (found == item->keys.end())
-        found = item->keys.insert(found, DraftKey{key.key, nullptr, 0});
-      found->node = &key.value;
-      found->owner = owner;
-      if (key.key == "gains") {
-        item->gains_owner =
-            stack.empty() ? context.behavior.states[static_cast<std::size_t>(owner)].path : stack;
-      }
-    }
+    lay_item(context, *item, entry.value, layer);
   }
 }
 
-void lay_torque_loops(Draft& draft, const core::YamlNode& map, int owner) {
+// Tables by foot or group; `off` leaves the group's actuators as they are.
+void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& map,
+                      const Layer& layer) {
+  if (!core::expect_map(map, "tables by foot or group", context.diagnostics)) return;
   for (const core::YamlEntry& entry : map.entries) {
     auto item = std::find_if(draft.torque_loops.begin(), draft.torque_loops.end(),
                              [&](const DraftItem& other) { return other.name == entry.key; });
-    if (item == draft.torque_loops.end()) {
-      draft.torque_loops.push_back({entry.key, entry.key_mark, owner, {}, {}});
-      item = draft.torque_loops.end() - 1;
+    if (item != draft.torque_loops.end()) {
+      if (layer.stack.empty() && parallel(context, item->owner, layer.owner)) {
+        report_clash(context, entry.key_mark, fmt::format("the torque loop of '{}'", entry.key),
+                     item->owner, layer.owner);
+      }
+      draft.torque_loops.erase(item);
     }
-    item->keys = {{"table", &entry.value, owner}};
+    draft.torque_loops.push_back({entry.key,
+                                  entry.key_mark,
+                                  layer.owner,
+                                  {{"table", &entry.value, layer.owner}},
+                                  {},
+                                  layer.index});
   }
+}
+
+// The tasks that a table of gains, or a state's own, speaks of.
+const core::YamlNode* gains_by_task(const LoadContext& context, const core::YamlNode& gains) {
+  if (!gains.is_scalar()) return &gains;
+  const core::YamlNode* section = context.section("gains");
+  return section == nullptr ? nullptr : section->find(gains.scalar);
+}
+
+// Two regions that both name gains for a task say it twice.
+void lay_gains(LoadContext& context, Draft& draft, const core::YamlNode& gains,
+               const Layer& layer) {
+  const core::YamlNode* mine = gains_by_task(context, gains);
+  for (const DraftGains& other : draft.gains) {
+    if (other.of_stack || mine == nullptr || !parallel(context, other.owner, layer.owner)) continue;
+    const core::YamlNode* theirs = gains_by_task(context, *other.node);
+    for (const core::YamlEntry& entry : mine->entries) {
+      if (theirs == nullptr || theirs->find(entry.key) == nullptr) continue;
+      report_clash(context, gains.is_scalar() ? gains.mark : entry.key_mark,
+                   fmt::format("gains of '{}'", entry.key), other.owner, layer.owner);
+      break;
+    }
+  }
+  draft.gains.push_back(
+      {&gains, layer.owner, layer.index, false, !layer.stack.empty(), layer_name(context, layer)});
+}
+
+std::vector<std::string> sorted_names(const core::YamlNode& list) {
+  std::vector<std::string> names;
+  for (const core::YamlNode& item : list.items) names.push_back(item.scalar);
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 // What a stack and a state have in common.
 void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, int owner,
               const std::string& stack) {
+  const Layer layer = {owner, stack, draft.layers++};
   if (const auto* contacts = keys.find("contacts")) {
     if (draft.contacts != nullptr && stack.empty() &&
-        parallel(context, draft.contacts_owner, owner)) {
+        parallel(context, draft.contacts_owner, owner) &&
+        sorted_names(*draft.contacts) != sorted_names(*contacts)) {
       report_clash(context, contacts->mark, "`contacts`", draft.contacts_owner, owner);
     }
     draft.contacts = contacts;
     draft.contacts_owner = owner;
   }
   if (const auto* tasks = keys.find("tasks")) {
-    lay_over(context, draft.tasks, *tasks, owner, stack, "task");
+    lay_over(context, draft.tasks, *tasks, layer, "task");
   }
   if (const auto* internal = keys.find("internal")) {
-    lay_over(context, draft.internals, *internal, owner, stack, "internal force");
+    lay_over(context, draft.internals, *internal, layer, "internal force");
   }
-  if (const auto* gains = keys.find("gains")) draft.gains.push_back({gains, owner});
+  if (const auto* gains = keys.find("gains")) lay_gains(context, draft, *gains, layer);
   if (const auto* loops = keys.find("torque_loop")) {
-    if (core::expect_map(*loops, "tables by foot or group", context.diagnostics)) {
-      lay_torque_loops(draft, *loops, owner);
-    }
+    lay_torque_loops(context, draft, *loops, layer);
   }
 }
 
@@ -171,6 +234,7 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
       lay_keys(context, draft, *stack, owner, name.scalar);
       for (DraftItem& item : draft.tasks) item.owner = 0;  // no state's word yet
       for (DraftItem& item : draft.internals) item.owner = 0;
+      for (DraftItem& item : draft.torque_loops) item.owner = 0;
       draft.contacts_owner = 0;
     }
   }
@@ -178,6 +242,9 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
     const core::YamlNode& keys = keys_of(context, s);
     lay_keys(context, draft, keys, s, "");
     if (const auto* transition = keys.find("contact_transition"); transition && toward == nullptr) {
+      if (draft.transition != nullptr && parallel(context, draft.transition_owner, s)) {
+        report_clash(context, transition->mark, "`contact_transition`", draft.transition_owner, s);
+      }
       draft.transition = transition;
       draft.transition_owner = s;
     }
