@@ -2,54 +2,169 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/output_file.h"
+#include "behaviors/physics_check.h"
 #include "model/control_model.h"
+#include "sim/world_description.h"
 
 namespace footfall::apps {
 namespace {
 
-// Loads a behavior and, with a robot, compiles its model; true if there was nothing to say.
-void check_file(const std::string& file, core::Diagnostics& diagnostics) {
-  behaviors::LoadOptions options;
-  options.search = search_path();
-  const auto behavior = behaviors::load_behavior(find_behavior_file(file), options, diagnostics);
+struct CheckOptions {
+  std::vector<std::string> files;
+  std::string stdin_name = "stdin";
+  bool strict = false, json = false;
+};
+
+void check_model(const model::RobotDescription& robot, core::Diagnostics& diagnostics) {
+  try {
+    model::ControlModel model(robot);
+  } catch (const std::exception& error) {
+    diagnostics.error({diagnostics.add_file(robot.path), 0, 0}, "model", error.what());
+  }
+}
+
+void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
+  const model::RobotDescription robot = model::load_robot(path, diagnostics);
+  if (!diagnostics.has_errors()) check_model(robot, diagnostics);
+}
+
+void check_world(const std::string& path, core::Diagnostics& diagnostics) {
+  const sim::WorldDescription world = sim::load_world(path, diagnostics);
+  if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+}
+
+// With a robot: what it asks of its physics.
+void check_loaded(const std::unique_ptr<behaviors::Behavior>& behavior,
+                  core::Diagnostics& diagnostics) {
   if (!behavior || !behavior->has_robot) return;
   try {
-    model::ControlModel model(behavior->robot);
+    behaviors::check_physics(*behavior, diagnostics);
   } catch (const std::exception& error) {
     diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
   }
 }
 
+behaviors::LoadOptions load_options() {
+  behaviors::LoadOptions options;
+  options.search = search_path();
+  return options;
+}
+
+void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
+  check_loaded(behaviors::load_behavior(path, load_options(), diagnostics), diagnostics);
+}
+
+// Kinds of files by their first key. A file of no kind is taken for a behavior, which says so.
+struct Kind {
+  const char* key;
+  void (*check)(const std::string& path, core::Diagnostics& diagnostics);
+};
+constexpr Kind kKinds[] = {
+    {"behavior", check_behavior},
+    {"robot", check_robot},
+    {"world", check_world},
+};
+
+// The first key of the file, or of the base that it begins with; empty if it cannot be read.
+std::string first_key(const std::string& path) {
+  core::Diagnostics ignored;
+  const core::YamlNode root = core::load_yaml_with_base(path, ignored);
+  return root.is_map() && !root.entries.empty() ? root.entries.front().key : std::string();
+}
+
+void check_file(const std::string& file, const CheckOptions& options,
+                core::Diagnostics& diagnostics) {
+  if (file == "-") {
+    const std::string text = read_whole_file(file);
+    check_loaded(
+        behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics),
+        diagnostics);
+    return;
+  }
+  const std::string path = find_behavior_file(file);
+  const std::string key = first_key(path);
+  const auto kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return key == k.key; });
+  (kind == std::end(kKinds) ? check_behavior : kind->check)(path, diagnostics);
+}
+
+nlohmann::ordered_json to_json(const std::string& name, const core::Diagnostics& diagnostics,
+                               bool ok) {
+  auto list = nlohmann::ordered_json::array();
+  for (const core::Diagnostic& item : diagnostics.sorted()) {
+    list.push_back({{"severity", item.severity == core::Severity::error ? "error" : "warning"},
+                    {"id", item.id},
+                    {"file", item.mark.file >= 0 ? diagnostics.file(item.mark.file) : name},
+                    {"line", item.mark.line},
+                    {"column", item.mark.column},
+                    {"text", item.text}});
+  }
+  return {{"file", name}, {"ok", ok}, {"diagnostics", std::move(list)}};
+}
+
+std::string counted(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+int check(const CheckOptions& options) {
+  int exit_code = kGood, errors = 0, warnings = 0;
+  auto results = nlohmann::ordered_json::array();
+  for (const std::string& file : options.files) {
+    core::Diagnostics diagnostics;
+    check_file(file, options, diagnostics);
+    const auto items = diagnostics.sorted();
+    const auto wrong = static_cast<int>(
+        std::ranges::count(items, core::Severity::error, &core::Diagnostic::severity));
+    const int doubtful = static_cast<int>(items.size()) - wrong;
+    errors += wrong;
+    warnings += doubtful;
+    const bool ok = wrong == 0 && (doubtful == 0 || !options.strict);
+    if (wrong > 0) exit_code = kBadInput;
+    if (!ok) exit_code = std::max(exit_code, kRobotFailed);
+    const std::string name = file == "-" ? options.stdin_name : file;
+    if (options.json) {
+      results.push_back(to_json(name, diagnostics, ok));
+      continue;
+    }
+    print_diagnostics(diagnostics);
+    if (ok)
+      fmt::print("{}: ok{}\n", name, doubtful > 0 ? " (" + counted(doubtful, "warning") + ")" : "");
+  }
+  if (options.json) {
+    const nlohmann::ordered_json out = {{"files", std::move(results)}};
+    // Bytes of a file that are no UTF-8 are shown as such, not an exception.
+    fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else if (options.files.size() > 1 || errors + warnings > 0) {
+    fmt::print("{} checked: {}, {}\n", counted(static_cast<int>(options.files.size()), "file"),
+               counted(errors, "error"), counted(warnings, "warning"));
+  }
+  return exit_code;
+}
+
 }  // namespace
 
 void add_check_command(CLI::App& app, int& exit_code) {
-  struct Options {
-    std::vector<std::string> files;
-    bool strict = false;
-  };
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("check", "Checks behavior files without running them");
-  command->add_option("FILE", options->files, "Behavior files")->required();
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* command =
+      app.add_subcommand("check", "Checks behavior, robot and world files without running them");
+  command
+      ->add_option("FILE", options->files,
+                   "Behavior files or names, robot files, world files; - for a behavior on stdin")
+      ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
-  command->footer("Example: footfall check behaviors/library/balance.yaml");
-  command->callback([options, &exit_code] {
-    exit_code = kGood;
-    for (const std::string& file : options->files) {
-      core::Diagnostics diagnostics;
-      check_file(file, diagnostics);
-      std::fputs(diagnostics.to_string().c_str(), stderr);
-      if (diagnostics.has_errors()) {
-        exit_code = kBadInput;
-      } else if (!diagnostics.all().empty() && options->strict) {
-        exit_code = std::max(exit_code, kRobotFailed);
-      } else {
-        fmt::print("{}: ok\n", file);
-      }
-    }
-  });
+  command->add_flag("--json", options->json, "One JSON object with every problem");
+  command->add_option(
+      "--stdin-name", options->stdin_name,
+      "What stands for the file of - in messages; `base:` and `robot:` are sought beside it");
+  command->footer(
+      "Exit codes: 0 clean, 1 warnings with --strict, 2 errors.\n"
+      "Example: footfall check --strict behaviors/library/balance.yaml robots/hume/robot.yaml");
+  command->callback([options, &exit_code] { exit_code = check(*options); });
 }
 
 }  // namespace footfall::apps

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "behaviors/physics_check.h"
+
 namespace footfall::apps {
 namespace fs = std::filesystem;
 
@@ -83,7 +85,8 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
 
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
                                                      const std::string& robot,
-                                                     const std::vector<std::string>& set) {
+                                                     const std::vector<std::string>& set,
+                                                     bool physics) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
   options.search = search_path();
@@ -93,6 +96,7 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
   if (!diagnostics.has_errors()) {
     behavior = behaviors::load_behavior(find_behavior_file(path), options, diagnostics);
   }
+  if (behavior != nullptr && physics) behaviors::check_physics(*behavior, diagnostics);
   print_diagnostics(diagnostics);
   return diagnostics.has_errors() ? nullptr : std::move(behavior);
 }

@@ -7,6 +7,7 @@
 
 #include "behaviors/loader.h"
 #include "core/diagnostics.h"
+#include "core/key_table.h"
 
 namespace CLI {
 class App;
@@ -25,6 +26,14 @@ void add_check_command(CLI::App& app, int& exit_code);
 void add_trace_command(CLI::App& app, int& exit_code);
 void add_signals_command(CLI::App& app, int& exit_code);
 void add_graph_command(CLI::App& app, int& exit_code);
+void add_schema_command(CLI::App& app, int& exit_code);
+void add_reference_command(CLI::App& app, int& exit_code);
+
+// The kinds of file that people write, as tables of keys.
+std::vector<const core::FileTable*> file_tables();
+void add_fmt_command(CLI::App& app, int& exit_code);
+void add_config_command(CLI::App& app, int& exit_code);
+void add_new_command(CLI::App& app, int& exit_code);
 
 // Folders that hold robots/, behaviors/library/ and sim/worlds/: the working folder, those of
 // FOOTFALL_PATH (colons between), the source tree, the installed data.
@@ -34,10 +43,12 @@ std::vector<std::string> search_path();
 // nowhere.
 std::string find_behavior_file(const std::string& name);
 
-// Loads a behavior and prints every problem on stderr; nullptr if there were errors.
+// Loads a behavior, judges what it asks of its robot's physics if told to, and prints every problem
+// on stderr; nullptr if there were errors.
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
                                                      const std::string& robot,
-                                                     const std::vector<std::string>& set);
+                                                     const std::vector<std::string>& set,
+                                                     bool physics = false);
 
 // Every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is set).
 void print_diagnostics(const core::Diagnostics& diagnostics);

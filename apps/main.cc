@@ -21,6 +21,11 @@ int main(int argc, char** argv) {
   footfall::apps::add_trace_command(app, exit_code);
   footfall::apps::add_signals_command(app, exit_code);
   footfall::apps::add_graph_command(app, exit_code);
+  footfall::apps::add_schema_command(app, exit_code);
+  footfall::apps::add_reference_command(app, exit_code);
+  footfall::apps::add_fmt_command(app, exit_code);
+  footfall::apps::add_config_command(app, exit_code);
+  footfall::apps::add_new_command(app, exit_code);
   footfall::apps::add_report_command(app, exit_code);
   try {
     app.parse(argc, argv);

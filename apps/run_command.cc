@@ -187,7 +187,7 @@ int run_behavior(const RunOptions& options) {
         "--film: error: a film is made from the log with the report: leave out --no-log and "
         "--no-report");
   }
-  auto behavior = load_or_explain(options.behavior, options.robot, options.set);
+  auto behavior = load_or_explain(options.behavior, options.robot, options.set, true);
   if (!behavior) return kBadInput;
   if (!behavior->has_robot) {
     throw InputError(behavior->path +

@@ -38,7 +38,10 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 struct PlannerInfo {
   std::string name;
-  FootPlannerSpec spec;
+  FootPlannerSpec spec;      // its kappa: unless kappa_parameter says where it is
+  int kappa_parameter = -1;  // into Behavior::parameters, one value or one for each of x y
+  int kappa_slot = -1;       // of that parameter's first value
+  int kappa_size = 0;
   int goal_slot = -1;        // parameter slot of the goal's x (y follows); -1: constant
   std::vector<double> goal;  // constant goal
   int done_event = -1, late_event = -1, failed_event = -1;

@@ -29,6 +29,19 @@ bool Chart::event_matches(std::string_view pattern, std::string_view event) {
          (event.size() == pattern.size() || event[pattern.size()] == '.');
 }
 
+void Chart::match_events() {
+  const auto words = (events.size() + 63) / 64;
+  event_words = static_cast<int>(words);
+  event_match.assign(transitions.size() * words, 0);
+  for (const EventPattern& pattern : patterns) {
+    const std::size_t row = static_cast<std::size_t>(pattern.transition) * words;
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      if (!event_matches(pattern.text, events[e])) continue;
+      event_match[row + e / 64] |= std::uint64_t{1} << (e % 64);
+    }
+  }
+}
+
 std::int64_t periods_of(double seconds, std::int64_t rate_mhz) noexcept {
   if (!(seconds >= 0.0) || seconds > 1e6) return -1;
   const std::int64_t ns = std::llround(seconds * 1e9);  // at most 10^15

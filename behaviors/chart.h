@@ -108,6 +108,13 @@ struct LogText {
 
 inline constexpr int kMaxLogValues = 8;
 
+// An event or prefix that a transition listens to, as rule 7 writes it.
+struct EventPattern {
+  int transition = 0;
+  std::string text;
+  core::Mark mark;
+};
+
 struct Chart {
   std::int64_t rate_mhz = 1'000'000;  // ticks per second, in millihertz
   int micro_steps = 64;               // bound in one tick
@@ -120,6 +127,7 @@ struct Chart {
   std::vector<std::string> marks;
   std::vector<CallInfo> calls;
   std::vector<std::string> events;
+  std::vector<EventPattern> patterns;
   // Which events enable which transition: bit e of row t; event_words 64-bit words a row.
   std::vector<std::uint64_t> event_match;
   int event_words = 0;
@@ -137,6 +145,8 @@ struct Chart {
     const auto word = static_cast<std::size_t>(transition * event_words + event / 64);
     return (event_match[word] >> (static_cast<unsigned>(event) % 64U) & 1U) != 0;
   }
+  // Fills event_match from the patterns, for all events there are.
+  void match_events();
   // The innermost compound state, or the root, that properly contains `source` and all targets.
   // Source: W3C SCXML 1.0, Appendix D, getTransitionDomain and findLCCA.
   int domain_of(const TransitionInfo& transition, const int* first_target, int count) const;

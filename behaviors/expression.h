@@ -1,6 +1,6 @@
-// Expressions of the behavior language: compiled at load to flat postfix code, evaluated in the
-// tick on a bounded stack without allocation. Dimensions are checked by the compiler; a value that
-// is not finite (division by zero, log of a negative number) is the caller's to judge.
+// Expressions of the behavior language: compiled at load to flat postfix code and lowered to steps
+// that the tick runs without allocation. Dimensions are checked by the compiler; a value that is
+// not finite (division by zero, log of a negative number) is the caller's to judge.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "behaviors/expression_program.h"
 #include "behaviors/parameter.h"
 #include "core/signal_table.h"
 #include "core/units.h"
@@ -61,24 +62,33 @@ struct Instruction {
   double value = 0.0;
 };
 
-// One compiled expression: a stretch of the pool's code.
+// One compiled expression: a stretch of the pool's code, and how the tick gets its value.
 struct Expression {
   int first = 0;
   int count = 0;
   core::Dimension dimension;
   bool bare = false;      // only numbers without unit: took the dimension that was needed
   bool constant = false;  // the same in every tick
+
+  enum class Form : std::uint8_t { constant, parameter, signal, step, program };
+  Form form = Form::program;
+  int index = 0;       // of the parameter's slot or the signal
+  int program = 0;     // its first step in the pool's program
+  double value = 0.0;  // of the constant
 };
 
 // All expressions of a behavior, by index.
 struct ExpressionPool {
   std::vector<Instruction> code;
+  std::vector<Step> program;
   std::vector<Expression> expressions;
 
   const Expression& operator[](int index) const {
     return expressions[static_cast<std::size_t>(index)];
   }
   int size() const { return static_cast<int>(expressions.size()); }
+  // An expression in postfix code.
+  int add(std::vector<Instruction> postfix, core::Dimension dimension, bool bare, bool constant);
   // A constant as an expression.
   int add_constant(double value, core::Dimension dimension);
   // A signal as an expression.
@@ -99,8 +109,24 @@ struct EvaluationContext {
 };
 
 // The value; not finite when some part of it that counts is not. Comparisons and logic give 0 or 1.
-double evaluate(const ExpressionPool& pool, int expression,
-                const EvaluationContext& context) noexcept;
+inline double evaluate(const ExpressionPool& pool, int expression,
+                       const EvaluationContext& context) noexcept {
+  const Expression& e = pool[expression];
+  switch (e.form) {
+    case Expression::Form::constant:
+      return e.value;
+    case Expression::Form::parameter:
+      return context.parameters[e.index];
+    case Expression::Form::signal:
+      return context.signals[e.index];
+    case Expression::Form::step: {  // nothing to put aside
+      const Step* step = pool.program.data() + e.program;
+      return step->kernel(step, 0.0, context, nullptr);
+    }
+    default:
+      return run_program(pool.program.data() + e.program, context);
+  }
+}
 
 // The names that an expression may use.
 struct ExpressionScope {
@@ -113,6 +139,9 @@ struct ExpressionScope {
   int entry_axis = -1;                                             // what a lone `entry` is
   core::Dimension entry_dimension;                                 // of the task's axes
   const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
+  // `max mean rms count` of one signal over a run (expectations only): the index of the signal that
+  // holds it, -1 if there is none.
+  std::function<int(std::string_view reduction, int signal)> find_reduction;
 };
 
 // Where and why an expression was refused; `offset` counts bytes from the start of the text.

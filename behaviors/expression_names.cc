@@ -1,6 +1,7 @@
 // What stands between the operators: numbers, names, functions.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "behaviors/expression_parser.h"
@@ -53,6 +54,7 @@ Operand ExpressionParser::parse_primary() {
 
 Operand ExpressionParser::parse_call(const Token& name) {
   if (name.text == "in") return parse_in();
+  if (const auto reduction = parse_reduction(name)) return *reduction;
   for (const FunctionInfo& function : kFunctions) {
     if (function.name == name.text) return parse_function(name, function);
   }
@@ -60,6 +62,24 @@ Operand ExpressionParser::parse_call(const Token& name) {
   for (const FunctionInfo& function : kFunctions) names.emplace_back(function.name);
   fail(name, "unknown-function",
        fmt::format("unknown function '{}'{}", name.text, core::did_you_mean(name.text, names)));
+}
+
+// `rms(task.height.error)`: one of the four names and a lone signal.
+std::optional<Operand> ExpressionParser::parse_reduction(const Token& name) {
+  constexpr std::array<std::string_view, 4> kReductions = {"max", "mean", "rms", "count"};
+  if (!scope_.find_reduction || at_ + 2 >= tokens_.size() || scope_.signals == nullptr ||
+      std::find(kReductions.begin(), kReductions.end(), name.text) == kReductions.end()) {
+    return std::nullopt;
+  }
+  const Token& of = tokens_[at_ + 1];
+  const int signal = of.kind == Token::Kind::name ? scope_.signals->find(of.text) : -1;
+  if (signal < 0 || tokens_[at_ + 2].text != ")") return std::nullopt;
+  const int index = scope_.find_reduction(name.text, signal);
+  if (index < 0) fail(name, "unknown-function", fmt::format("no {}() of this signal", name.text));
+  at_ += 3;
+  emit(Op::signal, index);
+  if (name.text == "count") return Operand{};
+  return Operand{scope_.signals->info(signal).dimension, false, false, 0.0};
 }
 
 Operand ExpressionParser::parse_in() {
@@ -95,8 +115,8 @@ Operand ExpressionParser::parse_function(const Token& name, const FunctionInfo& 
   }
   if (count < function.arguments || !is(")")) {
     fail(name, "bad-expression",
-         fmt::format("{}() expects {} argument{}", text, function.arguments,
-                     function.arguments == 1 ? "" : "s"));
+         fmt::format("{}() expects {} argument{}{}", text, function.arguments,
+                     function.arguments == 1 ? "" : "s", any ? " or more" : ""));
   }
   take();
   if (!any) emit(function.op);
@@ -135,7 +155,7 @@ Operand ExpressionParser::parse_parameter(const Token& token) {
       }
     }
     if (component < 0) {
-      fail(token, "bad-size",
+      fail(token, "size",
            fmt::format("parameter '{}' has {} values: write ${}.x", parameter.name, parameter.size,
                        parameter.name));
     }
@@ -154,7 +174,7 @@ int ExpressionParser::component_of(const std::string& name, int size) {
 
 Operand ExpressionParser::parse_entry(const Token& token) {
   if (scope_.entry_axes == nullptr) {
-    fail(token, "unknown-name", "'entry' has a meaning only in a task's reference");
+    fail(token, "misplaced-name", "'entry' has a meaning only in a task's reference");
   }
   int axis = scope_.entry_axis;
   if (token.text.size() > 5) {
@@ -164,12 +184,12 @@ Operand ExpressionParser::parse_entry(const Token& token) {
       if ((*scope_.entry_axes)[k] == name) axis = static_cast<int>(k);
     }
     if (axis < 0) {
-      fail(token, "unknown-name",
+      fail(token, "unknown-axis",
            fmt::format("the task has no axis '{}'{}", name,
                        core::did_you_mean(name, *scope_.entry_axes)));
     }
   } else if (axis < 0) {
-    fail(token, "unknown-name", "'entry' needs an axis here: write entry.x");
+    fail(token, "misplaced-name", "'entry' needs an axis here: write entry.x");
   }
   emit(Op::entry, axis);
   const core::Dimension dimension =
@@ -186,7 +206,7 @@ Operand ExpressionParser::parse_name(const Token& token) {
     return {};
   }
   if (name == "t") {
-    if (scope_.state < 0) fail(token, "unknown-name", "'t' has a meaning only in a state");
+    if (scope_.state < 0) fail(token, "misplaced-name", "'t' has a meaning only in a state");
     emit(Op::state_time, scope_.state);
     return {core::kTime, false, false, 0.0};
   }
@@ -214,6 +234,11 @@ void ExpressionParser::unknown_name(const Token& token) {
           token, "unknown-signal",
           fmt::format("unknown signal '{}': a parameter is written '${}'", token.text, token.text));
     }
+  }
+  if (core::parse_unit(token.text)) {
+    fail(token, "unknown-signal",
+         fmt::format("unknown signal '{}': a unit stands right behind its number, as in '2 1/s'",
+                     token.text));
   }
   fail(token, "unknown-signal",
        fmt::format("unknown signal '{}'{}", token.text, core::did_you_mean(token.text, names)));

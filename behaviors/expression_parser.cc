@@ -13,7 +13,7 @@ namespace footfall::behaviors {
 Operand ExpressionParser::compile() {
   const Operand result = parse_choice();
   if (peek().kind != Token::Kind::end) {
-    fail(peek(), "bad-expression", "unexpected " + describe(peek()));
+    fail(peek(), "bad-expression", "expected an operator, got " + describe(peek()));
   }
   return result;
 }
@@ -66,6 +66,18 @@ Operand ExpressionParser::unify(const Operand& a, const Operand& b, const Token&
   fail(at, "dimension",
        fmt::format("cannot {} {} and {}", what, core::dimension_name(a.dimension),
                    core::dimension_name(b.dimension)));
+}
+
+core::Dimension ExpressionParser::combine(core::Dimension a, core::Dimension b, bool times,
+                                          const Token& at) {
+  constexpr int kLargestExponent = 12;
+  const int sign = times ? 1 : -1;
+  const int m = a.m + sign * b.m, kg = a.kg + sign * b.kg, s = a.s + sign * b.s;
+  if (std::max({std::abs(m), std::abs(kg), std::abs(s)}) > kLargestExponent) {
+    fail(at, "dimension",
+         fmt::format("no quantity has a unit to the power of more than {}", kLargestExponent));
+  }
+  return times ? a * b : a / b;
 }
 
 void ExpressionParser::require_plain(const Operand& a, const Token& at, const std::string& what) {
@@ -172,9 +184,10 @@ Operand ExpressionParser::parse_product() {
   Operand left = parse_sign();
   while (is("*") || is("/")) {
     const bool times = take().text == "*";
+    const Token& at = peek();
     const Operand right = parse_sign();
-    left = {times ? left.dimension * right.dimension : left.dimension / right.dimension,
-            left.bare && right.bare, false, 0.0};
+    left = {combine(left.dimension, right.dimension, times, at), left.bare && right.bare, false,
+            0.0};
     emit(times ? Op::multiply : Op::divide);
   }
   return left;
@@ -208,7 +221,7 @@ Operand ExpressionParser::parse_power() {
   }
   core::Dimension dimension;
   for (int k = 0; k < std::abs(n); ++k) {
-    dimension = n > 0 ? dimension * base.dimension : dimension / base.dimension;
+    dimension = combine(dimension, base.dimension, n > 0, at);
   }
   return {dimension, false, false, 0.0};
 }
@@ -228,17 +241,19 @@ int compile_expression(std::string_view text, const ExpressionScope& scope,
   } catch (const Failure&) {
     return -1;
   }
+  if (parser.code.size() > kMaxSteps) {
+    error = {tokens->front().offset, "too-large",
+             fmt::format("expression of more than {} values and operations", kMaxSteps)};
+    return -1;
+  }
   if (expected && !result.bare && !(result.dimension == *expected)) {
     error = {tokens->front().offset, "dimension",
              fmt::format("expected {}, got {}", core::dimension_name(*expected),
                          core::dimension_name(result.dimension))};
     return -1;
   }
-  pool.expressions.push_back(
-      {static_cast<int>(pool.code.size()), static_cast<int>(parser.code.size()),
-       result.bare && expected ? *expected : result.dimension, result.bare, parser.constant});
-  pool.code.insert(pool.code.end(), parser.code.begin(), parser.code.end());
-  return pool.size() - 1;
+  return pool.add(std::move(parser.code), result.bare && expected ? *expected : result.dimension,
+                  result.bare, parser.constant);
 }
 
 }  // namespace footfall::behaviors

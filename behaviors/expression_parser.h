@@ -53,6 +53,8 @@ class ExpressionParser {
   void emit(Op op, int index = 0, double value = 0.0);
   // The dimension of two things that must agree.
   Operand unify(const Operand& a, const Operand& b, const Token& at, const std::string& what);
+  // The dimension of a product or quotient; an error if no quantity has it.
+  core::Dimension combine(core::Dimension a, core::Dimension b, bool times, const Token& at);
   void require_plain(const Operand& a, const Token& at, const std::string& what);
   Operand parse_choice();
   Operand parse_or();
@@ -67,6 +69,7 @@ class ExpressionParser {
   Operand parse_primary();
   Operand parse_call(const Token& name);
   Operand parse_in();
+  std::optional<Operand> parse_reduction(const Token& name);
   Operand parse_function(const Token& name, const FunctionInfo& function);
   Operand result_of(const FunctionInfo& function, const Token& name, Operand argument);
   Operand parse_parameter(const Token& token);

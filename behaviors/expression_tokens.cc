@@ -10,6 +10,8 @@
 namespace footfall::behaviors {
 namespace {
 
+constexpr std::size_t kMaxTokens = 4 * kMaxSteps;
+
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n'; }
@@ -19,7 +21,7 @@ bool is_unit_byte(char c) {
 }
 
 // Bytes of the longest unit at the start of `rest`, 0 if none; never cuts a word in two.
-std::size_t unit_length(std::string_view rest, core::Quantity& unit) {
+std::size_t unit_length(std::string_view rest) {
   if (rest.empty()) return 0;
   const char first = rest.front();
   if (!is_letter(first) && first != '%' && first != '1' &&
@@ -34,10 +36,7 @@ std::size_t unit_length(std::string_view rest, core::Quantity& unit) {
     if (n < rest.size() && (is_letter(rest[n]) || is_digit(rest[n]) || rest[n] == '.')) continue;
     if (n < rest.size() && rest[n] == '(' && is_letter(last)) continue;  // a function's name
     if (n == 1 && first == '1') continue;
-    if (const auto parsed = core::parse_unit(rest.substr(0, n))) {
-      unit = *parsed;
-      return n;
-    }
+    if (core::parse_unit(rest.substr(0, n))) return n;
   }
   return 0;
 }
@@ -52,14 +51,22 @@ bool read_number(std::string_view text, std::size_t& at, Token& token, Expressio
     error = {static_cast<int>(at), "bad-number", "number out of range"};
     return false;
   }
-  at += static_cast<std::size_t>(result.ptr - begin);
+  const auto digits = static_cast<std::size_t>(result.ptr - begin);
+  const std::string_view number = text.substr(at, digits);
+  at += digits;
   std::size_t after = at;
   while (after < text.size() && is_space(text[after])) ++after;
-  core::Quantity unit;
-  const std::size_t length = unit_length(text.substr(after), unit);
+  const std::size_t length = unit_length(text.substr(after));
   token.quantity = {value, core::kNone, true};
   if (length > 0) {
-    token.quantity = {value * unit.value, unit.dimension, false};
+    // Read like a value outside expressions, so that both are the same to the last bit.
+    const auto quantity =
+        core::parse_quantity(fmt::format("{} {}", number, text.substr(after, length)));
+    if (!quantity) {
+      error = {static_cast<int>(at - digits), "bad-number", "number out of range"};
+      return false;
+    }
+    token.quantity = *quantity;
     at = after + length;
   }
   return true;
@@ -90,6 +97,22 @@ bool read_symbol(std::string_view text, std::size_t& at, Token& token) {
   return true;
 }
 
+// What another language's sign is here.
+std::string_view instead_of(char sign) {
+  switch (sign) {
+    case '=':
+      return ": equal is '=='";
+    case '&':
+      return ": write 'and'";
+    case '|':
+      return ": write 'or'";
+    case '!':
+      return ": write 'not'";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
 
 std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionError& error) {
@@ -114,7 +137,13 @@ std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionErro
       ++at;
       read_name(text, at, token.text);
     } else if (!read_symbol(text, at, token)) {
-      error = {token.offset, "bad-character", fmt::format("unexpected '{}' in an expression", c)};
+      error = {token.offset, "bad-character",
+               fmt::format("unexpected '{}' in an expression{}", c, instead_of(c))};
+      return std::nullopt;
+    }
+    if (tokens.size() >= kMaxTokens) {
+      error = {token.offset, "too-large",
+               fmt::format("an expression of more than {} words and signs", kMaxTokens)};
       return std::nullopt;
     }
     tokens.push_back(std::move(token));

@@ -18,7 +18,7 @@ constexpr KeySpec kBehaviorRows[] = {
     key("robot", text_of("the name of a robot"),
         "a folder of `robots/` or the path of a robot file; without it the behavior is a pure "
         "statechart"),
-    key("parameters", by_name(map_of(kParameterKeys)), by_name(by_axis(any_quantity())),
+    key("parameters", by_name(map_of(kParameterKeys)), by_name(one_or_list(any_quantity())),
         "numbers under a name, used as `$NAME`, set with `--set NAME=VALUE`"),
     key("events", by_name(text_of("what it means")),
         "events that may be raised from outside, each with its meaning"),
@@ -44,7 +44,8 @@ constexpr KeySpec kScriptsRows[] = {
 };
 
 constexpr KeySpec kParameterRows[] = {
-    key("value", by_axis(any_quantity()), "a number with its unit, or a list of up to 16 of them")
+    key("value", one_or_list(any_quantity()),
+        "a number with its unit, or a list of up to 16 of them")
         .required(),
     key("range", pair(any_quantity()),
         "`[LEAST, GREATEST]` of every value; needed where `live: true`"),
@@ -93,7 +94,7 @@ constexpr WordSpec kOff[] = {{"off", "not at all"}};
 
 constexpr KeySpec kPlannerRows[] = {
     key("type", choice(kPlannerTypeRows), "which planner").required(),
-    key("kappa", by_axis(quantity(kNone)),
+    key("kappa", by_axis(quantity(kNone)), map_of(kKappaKeys),
         "pull towards the goal, for x (forward) and y (left) of the heading frame"),
     key("reversal", by_axis(quantity(kTime)),
         "time from the switch to the reversal of the CoM's velocity, for x and y")
@@ -116,6 +117,11 @@ constexpr KeySpec kPlannerRows[] = {
         "`planner.NAME.extension`")
         .otherwise("off"),
     key("doc", text_of("a text"), "what it is for, in a line"),
+};
+
+constexpr KeySpec kKappaRows[] = {
+    key("value", by_axis(quantity(kNone)), "for x and y").required(),
+    key("range", pair(quantity(kNone)), "what it may be").otherwise("[0, 1]"),
 };
 
 constexpr KeySpec kReachRows[] = {
@@ -174,7 +180,9 @@ constinit const core::KeyTable kGainsKeys = {
         "Gains of one task: u = x''_ref + kp e + ki ∫e + kd e'. At least one of them; a number "
         "for all axes, a list in the order of the task's axes, or a map by axis or joint. Plain "
         "numbers are live gains; what holds a parameter or an expression is computed every tick.",
-    .keys = kGainsRows};
+    .keys = kGainsRows,
+    .one_of = {"kp ki kd"},
+    .part = true};
 constinit const core::KeyTable kTorqueLoopKeys = {
     .id = "torque_loop",
     .doc =
@@ -186,6 +194,8 @@ constinit const core::KeyTable kPlannerKeys = {.id = "planner",
                                                .keys = kPlannerRows,
                                                .selector = "type",
                                                .variants = kPlannerTypeRows};
+constinit const core::KeyTable kKappaKeys = {
+    .id = "kappa", .doc = "A kappa outside its usual range.", .keys = kKappaRows};
 constinit const core::KeyTable kReachKeys = {
     .id = "reach", .doc = "Where the swing foot can go, from the stance foot.", .keys = kReachRows};
 constinit const core::KeyTable kExtensionKeys = {

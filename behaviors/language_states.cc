@@ -94,7 +94,7 @@ constexpr KeySpec kTransitionRows[] = {
 
 constexpr KeySpec kActionRows[] = {
     key("raise", name_of("an event"), "raises an event, taken before the tick's outside ones"),
-    key("set", by_name(computed(by_axis(any_quantity()))),
+    key("set", by_name(computed(one_or_list(any_quantity()))),
         "sets parameters to the values of expressions, seen at once by what follows"),
     key("log", text_of("a text"), "writes a line; `{EXPR}` is the value of an expression"),
     key("mark", name_of("a mark"), "a row in the log; `mark: step` counts in the signal `steps`"),
@@ -152,25 +152,32 @@ constinit const core::KeyTable kStateKeys = {
     .doc =
         "A state; all keys are optional. What an inner state says about control goes over what "
         "outer ones say, key by key.",
-    .keys = kStateRows};
+    .keys = kStateRows,
+    .part = true,
+    .empty = true};
 constinit const core::KeyTable kTemplateKeys = {
     .id = "template",
     .doc = "A state with arguments. `$side` is 1 as written and -1 in a mirror image.",
     .keys = kTemplateRows,
-    .more = &kStateKeys};
+    .more = &kStateKeys,
+    .part = true,
+    .empty = true};
 constinit const core::KeyTable kMachineKeys = {
     .id = "machine",
     .doc = "The root state, always active, with two keys more.",
     .keys = kMachineRows,
-    .more = &kStateKeys};
-constinit const core::KeyTable kTransitionKeys = {
-    .id = "transition",
-    .doc = "A transition, with at least one of `on`, `when`, `after`, and `to` or `do`.",
-    .keys = kTransitionRows};
+    .more = &kStateKeys,
+    .part = true,
+    .empty = true};
+constinit const core::KeyTable kTransitionKeys = {.id = "transition",
+                                                  .doc = "What may end a state, or only act.",
+                                                  .keys = kTransitionRows,
+                                                  .one_of = {"on when after", "to do"}};
 constinit const core::KeyTable kActionKeys = {
     .id = "action",
     .doc = "An action such as `{mark: step}`; of a list, one after the other.",
-    .keys = kActionRows};
+    .keys = kActionRows,
+    .one_of = {"raise set log mark call"}};
 constinit const core::KeyTable kInvokeKeys = {
     .id = "invoke",
     .doc =
@@ -184,7 +191,9 @@ constinit const core::KeyTable kContactTransitionKeys = {
     .doc =
         "A change of contacts without a jump in torque (Kim et al. 2016, eqs (1)-(2)); either "
         "`releases` or `loads`.",
-    .keys = kContactTransitionRows};
+    .keys = kContactTransitionRows,
+    .one_of = {"releases loads"},
+    .part = true};
 constinit const std::span<const core::WordSpec> kStateTypes = kStateTypeRows;
 constinit const std::span<const core::WordSpec> kHistoryDepths = kHistoryDepthRows;
 constinit const std::span<const core::WordSpec> kOnLate = kOnLateRows;

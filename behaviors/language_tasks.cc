@@ -154,18 +154,21 @@ constinit const core::KeyTable kTaskKeys = {
         "Something to control, with a priority. A task in force before (same name, type and "
         "point) keeps its reference and integral.",
     .keys = kTaskRows,
+    .part = true,
     .selector = "type",
     .variants = kTaskTypeRows};
 constinit const core::KeyTable kInternalKeys = {
     .id = "internal",
     .doc = "A force between contacts that moves nothing. Pairs that are not named get 0 N.",
-    .keys = kInternalRows};
+    .keys = kInternalRows,
+    .part = true};
 constinit const core::KeyTable kWaypointKeys = {
     .id = "waypoint", .doc = "A point that is passed, and when.", .keys = kWaypointRows};
 constinit const core::KeyTable kTrajectoryKeys = {
     .id = "trajectory",
     .doc = "A motion from the value at entry, with feed-forward.",
     .keys = kTrajectoryKeyRows,
+    .part = true,
     .selector = "trajectory",
     .variants = kTrajectoryRows};
 constinit const std::span<const core::WordSpec> kTaskTypes = kTaskTypeRows;

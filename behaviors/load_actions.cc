@@ -21,6 +21,13 @@ void add(LoadContext& context, ActionInfo action) { context.behavior.actions.pus
 void load_raise(LoadContext& context, const core::YamlNode& node) {
   const auto name = core::read_text(node, context.diagnostics, "the name of an event");
   if (!name) return;
+  if (!core::is_dotted_name(*name)) {
+    context.error(node.mark, "event-name",
+                  fmt::format("'{}' is no event: names of letters, digits, '_' and '-', with dots "
+                              "between",
+                              *name));
+    return;
+  }
   const int event = context.add_event(*name);
   if (event < context.built_in_events &&
       std::find(context.declared_events.begin(), context.declared_events.end(), *name) ==
@@ -47,6 +54,9 @@ void set_component(LoadContext& context, const ParameterInfo& info, int componen
 
 void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope& scope) {
   if (!core::expect_map(node, "parameters by name", context.diagnostics)) return;
+  if (node.entries.empty()) {
+    context.error(node.mark, "empty-value", "nothing to set: expected {PARAMETER: VALUE}");
+  }
   for (const core::YamlEntry& entry : node.entries) {
     const int index = context.behavior.find_parameter(entry.key);
     if (index < 0) {
@@ -69,7 +79,7 @@ void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope
         set_component(context, copy, k, entry.value.items[static_cast<std::size_t>(k)], scope);
       }
     } else {
-      context.error(entry.value.mark, "bad-size",
+      context.error(entry.value.mark, "size",
                     fmt::format("expected {} values, got {}", copy.size, entry.value.items.size()));
     }
   }
@@ -89,7 +99,7 @@ void load_log(LoadContext& context, const core::YamlNode& node, const ValueScope
     } else if (c == '{') {
       const std::size_t end = text->find('}', k);
       if (end == std::string::npos) {
-        context.error(node.mark, "bad-text", "'{' without '}' in a text");
+        context.error(node.mark, "log-text", "'{' without '}' in a text");
         return;
       }
       log.expressions.push_back(context.compile(
@@ -101,7 +111,7 @@ void load_log(LoadContext& context, const core::YamlNode& node, const ValueScope
     }
   }
   if (log.expressions.size() > kMaxLogValues) {
-    context.error(node.mark, "bad-text",
+    context.error(node.mark, "log-text",
                   fmt::format("a text has at most {} fields", kMaxLogValues));
     return;
   }
@@ -112,6 +122,7 @@ void load_log(LoadContext& context, const core::YamlNode& node, const ValueScope
 void load_mark(LoadContext& context, const core::YamlNode& node) {
   const auto name = core::read_name(node, context.diagnostics, "the name of a mark");
   if (!name) return;
+  context.marks.emplace_back(*name, node.mark);
   const int mark = intern(context.behavior.marks, *name);
   if (*name == "step") context.behavior.step = mark;
   add(context, {ActionKind::mark, mark, -1, 0.0, 0.0});

@@ -36,7 +36,7 @@ bool compile_parameter(LoadContext& context, const core::YamlNode& node, const A
   const ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
   if (info.size == 1) return false;
   if (info.size != static_cast<int>(axes.names.size())) {
-    context.error(node.mark, "bad-size",
+    context.error(node.mark, "size",
                   fmt::format("parameter '{}' has {} values, the task has {} axes", info.name,
                               info.size, axes.names.size()));
     return true;
@@ -86,7 +86,7 @@ std::vector<int> compile_axes(LoadContext& context, const core::YamlNode& node,
   std::vector<int> out(axes.names.size(), -1);
   if (node.is_sequence()) {
     if (node.items.size() != axes.names.size()) {
-      context.error(node.mark, "bad-size",
+      context.error(node.mark, "size",
                     fmt::format("expected {} values, one for each of {}, got {}", axes.names.size(),
                                 fmt::join(axes.names, " "), node.items.size()));
       return out;

@@ -5,9 +5,39 @@
 
 #include <algorithm>
 
+#include "behaviors/expression_tokens.h"
 #include "behaviors/substitution.h"
 
 namespace footfall::behaviors {
+namespace {
+
+// Signs apart from what they belong to, or two in a row: `= - $x` has lost what came before.
+std::vector<int> stray_signs(const std::string& text) {
+  std::vector<int> out;
+  ExpressionError ignored;
+  const auto tokens = tokenize(text, ignored);
+  if (!tokens) return out;
+  const auto is_sign = [](const Token& token) {
+    return token.kind == Token::Kind::symbol && (token.text == "+" || token.text == "-");
+  };
+  for (std::size_t k = 0; k + 1 < tokens->size(); ++k) {
+    const Token& token = (*tokens)[k];
+    if (!is_sign(token)) continue;
+    const Token* before = k == 0 ? nullptr : &(*tokens)[k - 1];
+    const bool operand_before =
+        before != nullptr && (before->text == ")" || before->kind == Token::Kind::number ||
+                              before->kind == Token::Kind::parameter ||
+                              (before->kind == Token::Kind::name && before->text != "and" &&
+                               before->text != "or" && before->text != "not"));
+    if (operand_before) continue;
+    const bool apart = (*tokens)[k + 1].offset > token.offset + 1;
+    const bool second = before != nullptr && is_sign(*before);
+    if (apart || second) out.push_back(token.offset);
+  }
+  return out;
+}
+
+}  // namespace
 
 void LoadContext::error(core::Mark mark, std::string_view id, std::string text) {
   diagnostics.error(mark, id, std::move(text));
@@ -15,6 +45,10 @@ void LoadContext::error(core::Mark mark, std::string_view id, std::string text) 
 
 void LoadContext::warning(core::Mark mark, std::string_view id, std::string text) {
   diagnostics.warning(mark, id, std::move(text));
+}
+
+void LoadContext::absence(core::Mark mark, std::string_view id, std::string text) {
+  if (!diagnostics.has_errors()) diagnostics.warning(mark, id, std::move(text));
 }
 
 int LoadContext::compile(const core::YamlNode& node, std::string_view text, std::size_t offset,
@@ -32,11 +66,23 @@ int LoadContext::compile(const core::YamlNode& node, std::string_view text, std:
   };
   ExpressionError problem;
   const int index = compile_expression(marked.text, names, expected, behavior.expressions, problem);
-  if (index >= 0) return index;
-  core::Mark mark = node.mark;
-  mark.column += static_cast<int>(offset) + (node.quoted ? 1 : 0) + marked.column(problem.offset);
-  error(mark, problem.id, problem.text);
-  return -1;
+  const auto place = [&](int at) {
+    core::Mark mark = node.mark;
+    mark.column += static_cast<int>(offset) + (node.quoted ? 1 : 0) + marked.column(at);
+    return mark;
+  };
+  if (index < 0) {
+    if (states_missing && problem.id == "unknown-state") return -1;
+    error(place(problem.offset), problem.id, problem.text);
+    return -1;
+  }
+  for (const int sign : stray_signs(marked.text)) {
+    warning(place(sign), "stray-sign",
+            fmt::format("a '{}' that stands alone: is a value missing before it? Write signs close "
+                        "to what they belong to",
+                        marked.text[static_cast<std::size_t>(sign)]));
+  }
+  return index;
 }
 
 int LoadContext::compile_value(const core::YamlNode& node, std::optional<core::Dimension> expected,
@@ -48,6 +94,10 @@ int LoadContext::compile_value(const core::YamlNode& node, std::optional<core::D
   }
   if (core::is_expression(node)) {
     return compile(node, std::string_view(node.scalar).substr(1), 1, expected, scope);
+  }
+  if (expected && !node.quoted && (node.scalar == "true" || node.scalar == "false")) {
+    core::report_expected(node, core::dimension_name(*expected), diagnostics);
+    return -1;
   }
   const char first = node.scalar.front();
   const bool name = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');
@@ -89,7 +139,6 @@ int LoadContext::compile_time(const core::YamlNode& node, const ValueScope& scop
 // Sought in the state and below, then in its parent and below, and outwards; the shallowest wins.
 int LoadContext::find_target(int from, std::string_view name, std::string& why) const {
   const auto& states = behavior.states;
-  if (name == states[0].path) return 0;
   for (int scope = from; scope >= 0; scope = states[static_cast<std::size_t>(scope)].parent) {
     int best = -1, other = -1;
     for (int s = std::max(scope, 1); s < states[static_cast<std::size_t>(scope)].end; ++s) {
@@ -103,15 +152,20 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
       best = s;
     }
     if (other >= 0) {
-      why = fmt::format("state '{}' is ambiguous: '{}' or '{}'", name,
+      why = fmt::format("state '{}' is ambiguous, write more of the path: '{}' or '{}'", name,
                         states[static_cast<std::size_t>(other)].path,
                         states[static_cast<std::size_t>(best)].path);
       return -1;
     }
     if (best >= 0) return best;
   }
+  if (name == states[0].path) return 0;
   std::vector<std::string> names;
-  for (const StateInfo& info : states) names.push_back(info.name);
+  // Guessing compares with every state: not for thousands of names that fit nothing.
+  constexpr int kGuesses = 100;
+  if (diagnostics.error_count() < kGuesses) {
+    for (const StateInfo& info : states) names.push_back(info.name);
+  }
   why = fmt::format("unknown state '{}'{}", name, core::did_you_mean(name, names));
   return -1;
 }
@@ -123,7 +177,10 @@ int LoadContext::require_target(int from, const core::YamlNode& node) {
   }
   std::string why;
   const int target = find_target(from, node.scalar, why);
-  if (target < 0) error(node.mark, "unknown-state", why);
+  if (target < 0 && !states_missing) {
+    const bool several = why.find("ambiguous") != std::string::npos;
+    error(node.mark, several ? "ambiguous-state" : "unknown-state", why);
+  }
   return target;
 }
 
@@ -163,7 +220,7 @@ int LoadContext::require_contact(const core::YamlNode& node) {
   if (contact < 0) {
     error(node.mark, "unknown-contact",
           fmt::format("unknown contact '{}'{}", node.scalar,
-                      core::did_you_mean(node.scalar, contact_names())));
+                      core::did_you_mean_or_list(node.scalar, contact_names())));
   }
   return contact;
 }

@@ -56,13 +56,6 @@ struct ValueScope {
   const std::vector<core::Dimension>* entry_dimensions = nullptr;
 };
 
-// One event or pattern that enables a transition, matched once all events are known.
-struct EventPattern {
-  int transition = 0;
-  std::string text;
-  core::Mark mark;
-};
-
 struct LoadContext {
   LoadContext(Behavior& out, const LoadOptions& given, core::Diagnostics& problems)
       : behavior(out), options(given), diagnostics(problems) {}
@@ -79,16 +72,20 @@ struct LoadContext {
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
   std::vector<std::string> used_templates, used_stacks;
   std::vector<std::string> raised_events, declared_events;
-  std::vector<EventPattern> patterns;
-  std::vector<std::string> script_functions;  // that `call:` may name
-  std::vector<std::string> script_patterns;   // of footfall.on
+  std::vector<std::string> script_functions;              // that `call:` may name
+  std::vector<std::string> script_patterns;               // of footfall.on
+  std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::map<std::pair<const void*, int>, int> reference_sources;  // ReferenceSpec::source
   std::vector<std::string_view> task_type_of_name;               // by Behavior::task_names
   int expanded_states = 0;
+  bool states_missing = false;  // after an error in a template: a name unknown may be one of them
 
   void error(core::Mark mark, std::string_view id, std::string text);
   void warning(core::Mark mark, std::string_view id, std::string text);
+  // For what is not there (nobody uses it, nothing raises it): not said once there are errors,
+  // which may be the reason.
+  void absence(core::Mark mark, std::string_view id, std::string text);
   // The value under a key of a map in the file's root, nullptr if there is none.
   const core::YamlNode* section(std::string_view key) const { return root.find(key); }
 
@@ -140,10 +137,10 @@ void load_transitions(LoadContext& context);     // load_transitions.cc
 void load_invokes(LoadContext& context);         // load_invokes.cc
 void load_control(LoadContext& context);         // load_control.cc
 void finish_events(LoadContext& context);        // load_events.cc
+void warn_absences(LoadContext& context);        // load_absences.cc
 
-// Events of a transition's `on` (load_events.cc).
-void load_patterns(LoadContext& context, int state, const core::YamlNode& on,
-                   std::vector<EventPattern>& out, int transition);
+// Events of a transition's `on`, into Chart::patterns (load_events.cc).
+void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition);
 // Actions of a list (on_entry, on_exit, do) appended to the chart (load_actions.cc).
 Range load_actions(LoadContext& context, const core::YamlNode& node, int state);
 // Targets of a transition, `initial` or `default` (load_machine.cc).

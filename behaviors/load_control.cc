@@ -51,7 +51,6 @@ class ControlLoader {
       }
       behavior_.controls[static_cast<std::size_t>(id)] = std::move(control);
     }
-    warn_unused();
     make_unused_gains(context_);
   }
 
@@ -149,6 +148,11 @@ class ControlLoader {
   }
 
   void compile_contacts(const Draft& draft, ControlSpec& control) {
+    if (draft.contacts == nullptr && !draft.tasks.empty()) {
+      context_.warning(
+          draft.mark, "no-contacts",
+          "tasks without `contacts`: name the feet that hold, or write `contacts: []`");
+    }
     if (draft.contacts == nullptr ||
         !core::expect_sequence(*draft.contacts, "a list of contacts", context_.diagnostics)) {
       return;
@@ -168,14 +172,24 @@ class ControlLoader {
   void compile_tasks(const Draft& draft, ControlSpec& control) {
     std::vector<TaskSpec> specs;
     int axes = 0;
+    const auto has_priority = [](const DraftItem& item) {
+      return item.find("priority") != nullptr;
+    };
+    const bool some = std::any_of(draft.tasks.begin(), draft.tasks.end(), has_priority);
     for (const DraftItem& item : draft.tasks) {
+      if (some && !has_priority(item) && item.find("type") != nullptr) {
+        context_.warning(item.mark, "no-priority",
+                         fmt::format("task '{}' has no priority, others here have: write "
+                                     "`priority: 1` if it belongs to the first level",
+                                     item.name));
+      }
       const std::optional<TaskSpec> spec = cached_task(item, draft);
       if (!spec) continue;
       specs.push_back(*spec);
       axes += spec->axes.count;
       if (spec->frame == tasks::Frame::stance && control.contacts.empty()) {
         const DraftKey* frame = item.find("frame");
-        context_.error(frame->node->mark, "bad-value",
+        context_.error(frame->node->mark, "misplaced-name",
                        fmt::format("task '{}' is measured from the stance contacts: none is in "
                                    "force",
                                    item.name));
@@ -220,14 +234,14 @@ class ControlLoader {
         for (const auto& other : robot.groups) names.push_back(other.name);
         context_.error(item.mark, "unknown-group",
                        fmt::format("'{}' is neither a foot with a leg nor a joint group{}",
-                                   item.name, core::did_you_mean(item.name, names)));
+                                   item.name, core::did_you_mean_or_list(item.name, names)));
         continue;
       }
       for (const int joint : robot.groups[static_cast<std::size_t>(group)].joints) {
         const auto j = static_cast<std::size_t>(joint);
         control.torque_loops[j] = table;
         if (speaker[j] != nullptr && speaker[j]->layer == item.layer) {
-          context_.error(item.mark, "twice",
+          context_.error(item.mark, "duplicate",
                          fmt::format("'{}' and '{}' both name joint '{}'", speaker[j]->name,
                                      item.name, robot.joints[j].name));
           break;
@@ -238,6 +252,9 @@ class ControlLoader {
   }
 
   int find_torque_loop(const core::YamlNode& name) {
+    if (!core::expect_scalar(name, "the name of a torque_loop table", context_.diagnostics)) {
+      return -1;
+    }
     std::vector<std::string> names;
     for (const TorqueLoopTable& table : behavior_.torque_loops) {
       if (table.name == name.scalar) return static_cast<int>(names.size());
@@ -245,7 +262,7 @@ class ControlLoader {
     }
     context_.error(name.mark, "unknown-torque-loop",
                    fmt::format("unknown torque_loop table '{}'{}", name.scalar,
-                               core::did_you_mean(name.scalar, names)));
+                               core::did_you_mean_or_list(name.scalar, names)));
     return -1;
   }
 
@@ -280,10 +297,14 @@ class ControlLoader {
   void read_moving(const core::YamlNode& feet, TransitionSpec& spec) {
     std::vector<const core::YamlNode*> items;
     for (const core::YamlNode& item : feet.items) items.push_back(&item);
-    if (!feet.is_sequence()) items.push_back(&feet);
+    if (!feet.is_sequence() || feet.items.empty()) items.push_back(&feet);
     for (const core::YamlNode* item : items) {
       const int contact = context_.require_contact(*item);
-      if (contact >= 0) spec.contacts.push_back(contact);
+      if (contact < 0) continue;
+      if (std::find(spec.contacts.begin(), spec.contacts.end(), contact) != spec.contacts.end()) {
+        context_.error(item->mark, "duplicate", fmt::format("contact '{}' twice", item->scalar));
+      }
+      spec.contacts.push_back(contact);
     }
   }
 
@@ -301,6 +322,7 @@ class ControlLoader {
       context_.error(node.mark, "missing-key", "`loads` needs `toward`: the stack to come");
       return;
     }
+    if (find_stack(context_, *toward, spec.owner) == nullptr) return;
     std::vector<int> around;
     for (const int s : active) {
       if (behavior_.is_descendant(spec.owner, s)) around.push_back(s);
@@ -333,18 +355,6 @@ class ControlLoader {
                      fmt::format("'{}' is {} here, but the state's contacts hold it",
                                  behavior_.robot.contacts[static_cast<std::size_t>(contact)].name,
                                  spec.loads ? "loaded" : "released"));
-    }
-  }
-
-  void warn_unused() {
-    const core::YamlNode* stacks = context_.section("stacks");
-    if (stacks == nullptr) return;
-    for (const core::YamlEntry& entry : stacks->entries) {
-      behavior_.stacks.push_back(entry.key);
-      const auto& used = context_.used_stacks;
-      if (std::find(used.begin(), used.end(), entry.key) != used.end()) continue;
-      context_.warning(entry.key_mark, "unused",
-                       fmt::format("stack '{}' is never used, and not checked", entry.key));
     }
   }
 

@@ -47,9 +47,11 @@ void lay_item(const LoadContext& context, DraftItem& item, const core::YamlNode&
   for (const core::YamlEntry& key : map.entries) {
     const auto same = [&](const DraftKey& other) { return other.key == key.key; };
     auto found = std::find_if(item.keys.begin(), item.keys.end(), same);
-    if (found == item.keys.end()) found = item.keys.insert(found, DraftKey{key.key, nullptr, 0});
+    if (found == item.keys.end())
+      found = item.keys.insert(found, DraftKey{key.key, nullptr, 0, {}});
     found->node = &key.value;
     found->owner = layer.owner;
+    found->mark = key.key_mark;
     if (key.key == "gains") {
       item.gains.push_back(
           {&key.value, layer.owner, layer.index, true, false, layer_name(context, layer)});
@@ -74,9 +76,10 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
       if (item == items.end()) {
         std::vector<std::string> names;
         for (const DraftItem& other : items) names.push_back(other.name);
-        context.error(entry.key_mark, "unknown-task",
+        const bool task = std::string_view(what) == "task";
+        context.error(entry.key_mark, task ? "unknown-task" : "unknown-internal",
                       fmt::format("there is no {} '{}' to switch off{}", what, entry.key,
-                                  core::did_you_mean(entry.key, names)));
+                                  core::did_you_mean_or_list(entry.key, names)));
       } else {
         items.erase(item);
       }
@@ -87,6 +90,7 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
       continue;
     }
     if (item == items.end()) {
+      core::check_name(entry, context.diagnostics, fmt::format("the name of a {}", what));
       items.push_back({entry.key, entry.key_mark, owner, {}, {}, layer.index});
       item = items.end() - 1;
     }
@@ -111,7 +115,7 @@ void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& 
     draft.torque_loops.push_back({entry.key,
                                   entry.key_mark,
                                   layer.owner,
-                                  {{"table", &entry.value, layer.owner}},
+                                  {{"table", &entry.value, layer.owner, entry.key_mark}},
                                   {},
                                   layer.index});
   }
@@ -200,17 +204,17 @@ const DraftKey* DraftItem::find(std::string_view key) const {
 const core::YamlNode* find_stack(LoadContext& context, const core::YamlNode& name, int state) {
   const auto cached = context.stack_cache.find({name.scalar, state});
   if (cached != context.stack_cache.end()) return cached->second;
+  if (!core::expect_scalar(name, "the name of a stack", context.diagnostics)) return nullptr;
   const core::YamlNode* stacks = context.section("stacks");
-  const core::YamlNode* stack =
-      stacks == nullptr || !name.is_scalar() ? nullptr : stacks->find(name.scalar);
+  const core::YamlNode* stack = stacks == nullptr ? nullptr : stacks->find(name.scalar);
   if (stack == nullptr) {
     std::vector<std::string> names;
     if (stacks != nullptr) {
       for (const auto& entry : stacks->entries) names.push_back(entry.key);
     }
-    context.error(
-        name.mark, "unknown-stack",
-        fmt::format("unknown stack '{}'{}", name.scalar, core::did_you_mean(name.scalar, names)));
+    context.error(name.mark, "unknown-stack",
+                  fmt::format("unknown stack '{}'{}", name.scalar,
+                              core::did_you_mean_or_list(name.scalar, names)));
     return context.stack_cache[{name.scalar, state}] = nullptr;
   }
   if (!core::expect_map(*stack, "a stack", context.diagnostics)) return nullptr;
@@ -226,12 +230,16 @@ const core::YamlNode* find_stack(LoadContext& context, const core::YamlNode& nam
 Draft build_draft(LoadContext& context, const std::vector<int>& active,
                   const core::YamlNode* toward, int toward_state) {
   Draft draft;
+  if (!active.empty()) {
+    draft.mark = context.sources[static_cast<std::size_t>(active.back())]->mark;
+  }
   const int owner = toward != nullptr ? toward_state : stack_state(context, active);
   if (owner >= 0) {
     const core::YamlNode& name =
         toward != nullptr ? *toward : *keys_of(context, owner).find("stack");
     if (const core::YamlNode* stack = find_stack(context, name, owner)) {
       lay_keys(context, draft, *stack, owner, name.scalar);
+      draft.mark = stack->mark;
       for (DraftItem& item : draft.tasks) item.owner = 0;  // no state's word yet
       for (DraftItem& item : draft.internals) item.owner = 0;
       for (DraftItem& item : draft.torque_loops) item.owner = 0;

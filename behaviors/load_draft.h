@@ -15,6 +15,7 @@ struct DraftKey {
   std::string key;
   const core::YamlNode* node = nullptr;
   int owner = 0;
+  core::Mark mark{};  // of the key itself
 };
 
 // A layer of gains: a table by name, gains by task that a state gives, or (`of_task`) those written
@@ -39,6 +40,7 @@ struct DraftItem {
 };
 
 struct Draft {
+  core::Mark mark;                           // of the stack, else of the innermost state
   const core::YamlNode* contacts = nullptr;  // a list
   int contacts_owner = 0;
   std::vector<DraftItem> tasks;

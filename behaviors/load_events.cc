@@ -34,12 +34,20 @@ void add_built_in(LoadContext& context) {
 
 std::vector<const core::YamlNode*> patterns_of(const core::YamlNode& on) {
   std::vector<const core::YamlNode*> patterns;
-  if (on.is_sequence()) {
+  if (on.is_sequence() && !on.items.empty()) {
     for (const core::YamlNode& item : on.items) patterns.push_back(&item);
   } else {
     patterns.push_back(&on);
   }
   return patterns;
+}
+
+void check_event_name(LoadContext& context, const std::string& name, core::Mark mark) {
+  if (core::is_dotted_name(name)) return;
+  context.error(mark, "event-name",
+                fmt::format("'{}' is no event: names of letters, digits, '_' and '-', with dots "
+                            "between",
+                            name));
 }
 
 constexpr std::string_view kDone = "done.state.";
@@ -61,13 +69,13 @@ std::string resolve_pattern(LoadContext& context, int state, const core::YamlNod
   if (target < 0) {
     core::Mark mark = node.mark;
     mark.column += static_cast<int>(kDone.size()) + (node.quoted ? 1 : 0);
-    context.error(mark, "unknown-state", why);
+    if (!context.states_missing) context.error(mark, "unknown-state", why);
     return {};
   }
   const StateInfo& info = context.behavior.states[static_cast<std::size_t>(target)];
   if (info.done_event < 0) {
-    context.error(node.mark, "never-raised",
-                  fmt::format("'{}' has no states: it is never done", info.path));
+    context.error(node.mark, "never-done",
+                  fmt::format("'{}' has no states of its own: it is never done", info.path));
     return {};
   }
   return context.behavior.events[static_cast<std::size_t>(info.done_event)];
@@ -79,6 +87,8 @@ void load_events(LoadContext& context) {
   if (const core::YamlNode* events = context.section("events")) {
     if (core::expect_map(*events, "events by name", context.diagnostics)) {
       for (const core::YamlEntry& entry : events->entries) {
+        core::check_doc(entry.value, context.diagnostics);
+        check_event_name(context, entry.key, entry.key_mark);
         context.declared_events.push_back(entry.key);
         context.add_event(entry.key);
       }
@@ -88,11 +98,17 @@ void load_events(LoadContext& context) {
   context.built_in_events = static_cast<int>(context.behavior.events.size());
 }
 
-void load_patterns(LoadContext& context, int state, const core::YamlNode& on,
-                   std::vector<EventPattern>& out, int transition) {
+void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition) {
+  auto& out = context.behavior.patterns;
+  const std::size_t first = out.size();
   for (const core::YamlNode* node : patterns_of(on)) {
     const std::string text = resolve_pattern(context, state, *node);
-    if (!text.empty()) out.push_back({transition, text, node->mark});
+    if (text.empty()) continue;
+    for (std::size_t k = first; k < out.size(); ++k) {
+      if (out[k].text != text) continue;
+      context.error(node->mark, "duplicate", fmt::format("event '{}' twice", text));
+    }
+    out.push_back({transition, text, node->mark});
   }
 }
 
@@ -107,19 +123,15 @@ void finish_events(LoadContext& context) {
     behavior.changed_events.push_back(  // gains: known only now
         context.add_event("parameter.changed." + behavior.parameters[p].name));
   }
-  const int count = static_cast<int>(behavior.events.size());
-  behavior.event_words = (count + 63) / 64;
-  behavior.event_match.assign(
-      behavior.transitions.size() * static_cast<std::size_t>(behavior.event_words), 0);
   if (!context.script_patterns.empty()) {
-    behavior.script_events.assign(static_cast<std::size_t>(count), 0);
+    behavior.script_events.assign(behavior.events.size(), 0);
     for (std::size_t e = 0; e < behavior.events.size(); ++e) {
       for (const std::string& pattern : context.script_patterns) {
         if (Chart::event_matches(pattern, behavior.events[e])) behavior.script_events[e] = 1;
       }
     }
   }
-  for (const EventPattern& pattern : context.patterns) {
+  for (const EventPattern& pattern : behavior.patterns) {
     const bool exact = !pattern.text.ends_with("*");
     const bool changed = pattern.text.starts_with(kChanged) &&
                          behavior.find_parameter(pattern.text.substr(kChanged.size())) >= 0;
@@ -130,19 +142,16 @@ void finish_events(LoadContext& context) {
       known.insert(known.end(), raised.begin(), raised.end());
       known.insert(known.end(), behavior.events.begin(),
                    behavior.events.begin() + context.built_in_events);
-      context.warning(pattern.mark, "never-raised",
+      context.absence(pattern.mark, "never-raised",
                       fmt::format("nothing raises '{}', and `events` does not list it{}",
                                   pattern.text, core::did_you_mean(pattern.text, known)));
     }
-    for (int e = 0; e < count; ++e) {
-      const std::string& event = behavior.events[static_cast<std::size_t>(e)];
-      if (!Chart::event_matches(pattern.text, event)) continue;
-      if (event.starts_with("parameter.changed.")) behavior.watches_parameters = true;
-      const int word = pattern.transition * behavior.event_words + e / 64;
-      behavior.event_match[static_cast<std::size_t>(word)] |= std::uint64_t{1}
-                                                              << (static_cast<unsigned>(e) % 64U);
+    for (const std::string& event : behavior.events) {
+      if (!event.starts_with(kChanged) || !Chart::event_matches(pattern.text, event)) continue;
+      behavior.watches_parameters = true;
     }
   }
+  behavior.match_events();
 }
 
 }  // namespace footfall::behaviors

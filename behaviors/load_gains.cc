@@ -62,10 +62,17 @@ std::optional<std::vector<double>> read_values(LoadContext& context, const core:
     return core::read_vector(node, dimension, use.names, context.diagnostics);
   }
   std::vector<double> values(size, 0.0);
+  const int before = context.diagnostics.error_count();
   const auto entries =
       core::match_names(node, use.names, use.joints ? "joint" : "axis", context.diagnostics);
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (entries[k] == nullptr) continue;
+    if (entries[k] == nullptr) {
+      if (!use.joints && context.diagnostics.error_count() == before) {
+        context.error(node.mark, "missing-key",
+                      fmt::format("no value for '{}' (0 if it is meant)", use.names[k]));
+      }
+      continue;
+    }
     values[k] =
         core::read_quantity(entries[k]->value, dimension, context.diagnostics).value_or(0.0);
   }
@@ -161,9 +168,9 @@ void load_gains(LoadContext& context) {
     if (!core::check_name(table, context.diagnostics, "the name of a gain table")) continue;
     if (!core::expect_map(table.value, "gains by task", context.diagnostics)) continue;
     for (const core::YamlEntry& task : table.value.entries) {
-      if (!check_entry(context, task.value)) continue;
       const std::string name = fmt::format("gains.{}.{}", table.key, task.key);
       GainEntry& entry = context.gain_entries[name];
+      entry.made = !check_entry(context, task.value);  // then there is nothing to make
       entry.node = &task.value;
       entry.name = name;
     }
@@ -176,6 +183,7 @@ GainEntry* find_gains(LoadContext& context, const std::string& table, const std:
 }
 
 bool require_gain_table(LoadContext& context, const core::YamlNode& name) {
+  if (!core::expect_scalar(name, "the name of a gain table", context.diagnostics)) return false;
   const core::YamlNode* section = context.section("gains");
   std::vector<std::string> tables;
   if (section != nullptr) {
@@ -188,7 +196,7 @@ bool require_gain_table(LoadContext& context, const core::YamlNode& name) {
   }
   context.error(name.mark, "unknown-gains",
                 fmt::format("unknown gain table '{}'{}", name.scalar,
-                            core::did_you_mean(name.scalar, tables)));
+                            core::did_you_mean_or_list(name.scalar, tables)));
   return false;
 }
 
@@ -225,7 +233,7 @@ void use_gain(LoadContext& context, const GainSource& source, std::size_t gain,
   if (entry.slots[gain] < 0) return;
   if (!node.is_scalar() && entry.axes != axes.names) {
     context.error(
-        node.mark, "bad-size",
+        node.mark, "size",
         fmt::format("{} serves a task with other axes too: write one number", entry.name));
   }
   constexpr std::array<int AxisSpec::*, 3> kMembers = {&AxisSpec::kp, &AxisSpec::ki, &AxisSpec::kd};
@@ -239,7 +247,7 @@ void make_unused_gains(LoadContext& context) {
   for (auto& [name, entry] : context.gain_entries) {
     if (entry.made) continue;
     if (!entry.overlaid) {
-      context.warning(entry.node->mark, "unused", fmt::format("no task uses {}", name));
+      context.absence(entry.node->mark, "unused", fmt::format("no task uses {}", name));
     }
     make_slots(context, entry, {});
   }

@@ -31,7 +31,8 @@ std::vector<Pair> read_between(LoadContext& context, const core::YamlNode& node,
                      context.require_contact(node.items[1])};
   if (pair[0] < 0 || pair[1] < 0) return pairs;
   if (pair[0] == pair[1]) {
-    context.error(node.items[1].mark, "bad-value", "a force between a contact and itself");
+    context.error(node.items[1].mark, "same-foot",
+                  "an internal force acts between two feet, not one");
     return pairs;
   }
   return {pair};
@@ -46,7 +47,7 @@ bool same_pair(const InternalSpec& a, const Pair& b) {
 std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem& item) {
   core::YamlNode map;
   map.kind = core::YamlNode::Kind::map;
-  for (const DraftKey& key : item.keys) map.entries.push_back({key.key, key.node->mark, false, {}});
+  for (const DraftKey& key : item.keys) map.entries.push_back({key.key, key.mark, false, {}});
   core::check_keys(map, kInternalKeys, context.diagnostics);
   const DraftKey* reference = item.find("reference");
   if (item.find("between") == nullptr || reference == nullptr) {
@@ -94,7 +95,7 @@ std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& d
           out.back().contact_a = pair[0];
           out.back().contact_b = pair[1];
         } else if (!all) {
-          context.error(between.mark, "twice",
+          context.error(between.mark, "duplicate",
                         "another internal force acts between these two contacts already");
         }
       }

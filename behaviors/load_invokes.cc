@@ -8,14 +8,15 @@ namespace footfall::behaviors {
 namespace {
 
 int find_planner(LoadContext& context, const core::YamlNode& node) {
+  if (!core::expect_scalar(node, "the name of a planner", context.diagnostics)) return -1;
   std::vector<std::string> names;
   for (const PlannerInfo& planner : context.behavior.planners) {
     if (planner.name == node.scalar) return static_cast<int>(names.size());
     names.push_back(planner.name);
   }
-  context.error(
-      node.mark, "unknown-planner",
-      fmt::format("unknown planner '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
+  context.error(node.mark, "unknown-planner",
+                fmt::format("unknown planner '{}'{}", node.scalar,
+                            core::did_you_mean_or_list(node.scalar, names)));
   return -1;
 }
 
@@ -55,7 +56,7 @@ void read_with(LoadContext& context, const core::YamlNode& node, const ValueScop
     invoke.switch_in = context.compile_value(*switch_in, core::kTime, scope);
   }
   if (invoke.stance >= 0 && invoke.stance == invoke.swing) {
-    context.error(swing->mark, "bad-value", "stance and swing are the same foot");
+    context.error(swing->mark, "same-foot", "stance and swing are the same foot");
   }
 }
 
@@ -89,6 +90,10 @@ void load_invoke(LoadContext& context, const core::YamlNode& node, int state) {
   if (const auto* late = node.find("on_late")) {
     const auto choice = core::read_choice(*late, kOnLate, context.diagnostics);
     invoke.closed_form = choice && *choice == 1;
+    if (invoke.deadline < 0) {
+      context.warning(late->mark, "no-effect",
+                      "`on_late` without `deadline`: nothing is ever late");
+    }
   }
   read_with(context, node, scope, invoke);
   context.behavior.invokes.push_back(invoke);

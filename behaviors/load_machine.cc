@@ -27,12 +27,12 @@ void read_kind(LoadContext& context, StateSource& source, StateInfo& info) {
     return;
   }
   if (parent) {
-    context.error(type->mark, "bad-type",
+    context.error(type->mark, "state-type",
                   fmt::format("a {} state has no states of its own", type->scalar));
     return;
   }
   if (info.parent < 0) {
-    context.error(type->mark, "bad-type", "the root is compound or parallel");
+    context.error(type->mark, "state-type", "the root is compound or parallel");
     return;
   }
   info.kind = *choice == 1 ? StateKind::final : StateKind::history_shallow;
@@ -76,14 +76,14 @@ void add_state(LoadContext& context, StateSource& source, int parent) {
   read_kind(context, source, info);
   const bool region = parent >= 0 && info_of(context, parent).kind == StateKind::parallel;
   if (region && info.kind == StateKind::final) {
-    context.error(source.mark, "bad-type", "a region of a parallel state cannot be final");
+    context.error(source.mark, "state-type", "a region of a parallel state cannot be final");
   }
   check_state_keys(context, source, info);
   states[static_cast<std::size_t>(source.index)] = info;
   for (std::size_t k = 0; k < source.children.size(); ++k) {
     for (std::size_t j = 0; j < k; ++j) {
       if (source.children[j].name == source.children[k].name) {
-        context.error(source.children[k].mark, "duplicate-state",
+        context.error(source.children[k].mark, "duplicate",
                       fmt::format("state '{}' is there already", source.children[k].name));
       }
     }
@@ -160,8 +160,10 @@ void load_history(LoadContext& context, int s) {
 void load_done(LoadContext& context, int s) {
   StateInfo& info = info_of(context, s);
   const core::YamlNode* node = context.sources[static_cast<std::size_t>(s)]->keys.find("done");
-  if (node == nullptr || !node->is_scalar()) return;
-  if (node->scalar == "all") return;
+  if (node == nullptr || !core::expect_scalar(*node, "all, any or a region", context.diagnostics) ||
+      node->scalar == "all") {
+    return;
+  }
   if (node->scalar == "any") {
     info.done = DoneRule::any;
     return;

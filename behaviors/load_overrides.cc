@@ -48,7 +48,7 @@ core::YamlNode* walk(LoadContext& context, core::YamlNode& start, const std::str
   for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
     core::YamlNode* next = node->is_map() ? child(*node, parts[k]) : nullptr;
     if (next == nullptr || !next->is_map()) {
-      context.error(mark, "unknown-name",
+      context.error(mark, "unknown-setting",
                     fmt::format("--set {}: there is no '{}'{}", name, parts[k],
                                 core::did_you_mean(parts[k], keys_of(*node))));
       return nullptr;
@@ -83,7 +83,7 @@ void set_gain(LoadContext& context, const std::string& name, std::vector<std::st
     put(*map, last, std::move(value));
     return;
   }
-  context.error(value.mark, "unknown-name",
+  context.error(value.mark, "unknown-setting",
                 fmt::format("--set {}: expected gains.TABLE.TASK.kp, ki or kd", name));
 }
 
@@ -102,7 +102,7 @@ void apply(LoadContext& context, const std::string& name, const std::string& tex
     core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
     if (map != nullptr && parts.size() >= 3) put(*map, parts.back(), std::move(value));
     if (map != nullptr && parts.size() < 3) {
-      context.error(value.mark, "unknown-name",
+      context.error(value.mark, "unknown-setting",
                     fmt::format("--set {}: expected planners.NAME.KEY", name));
     }
   } else {

@@ -21,7 +21,7 @@ bool read_values(LoadContext& context, const core::YamlNode& node, ParameterInfo
     items.push_back(&node);
   }
   if (items.empty() || items.size() > kMaxComponents) {
-    context.error(node.mark, "bad-size",
+    context.error(node.mark, "size",
                   fmt::format("expected 1 to {} values, got {}", kMaxComponents, items.size()));
     return false;
   }
@@ -86,19 +86,18 @@ void load_parameter(LoadContext& context, const core::YamlEntry& entry) {
   if (is_map) core::check_keys(map, kParameterKeys, context.diagnostics);
   const core::YamlNode* value =
       is_map ? core::require_key(map, "value", context.diagnostics) : &entry.value;
-  if (value == nullptr) return;
   ParameterInfo info;
   info.name = entry.key;
   info.slot = static_cast<int>(context.behavior.values.size());
   std::vector<double> values;
-  const bool good = read_values(context, *value, info, values);
+  const bool good = value != nullptr && read_values(context, *value, info, values);
   if (!good) values.assign(1, 0.0), info.size = 1, info.bare = true;
   read_range(context, map, info);
   if (good) check_against_range(context, *value, info, values);
   if (const auto* live = map.find("live")) {
     info.live = core::read_bool(*live, context.diagnostics).value_or(false);
     if (info.live && !info.has_range()) {
-      context.error(live->mark, "range",
+      context.error(live->mark, "live-range",
                     fmt::format("parameter '{}' is live and needs a range", info.name));
     }
   }

@@ -20,6 +20,73 @@ void read_pair(LoadContext& context, const core::YamlNode& map, const char* key,
   if (values) out = {(*values)[0], (*values)[1]};
 }
 
+// What kappa may be where nobody says otherwise: [Kim16] prints it with the wrong sign, and a
+// negative one makes every step longer than the last.
+constexpr std::array<double, 2> kKappaRange = {0.0, 1.0};
+
+void check_kappa(LoadContext& context, core::Mark mark, const double* values, int count,
+                 const std::array<double, 2>& range) {
+  for (int k = 0; k < count; ++k) {
+    if (values[k] >= range[0] && values[k] <= range[1]) continue;
+    context.error(mark, "out-of-range",
+                  fmt::format("kappa {:g} is outside {:g} .. {:g}; to allow it give `kappa` a "
+                              "`value` and a `range`, or a parameter with one",
+                              values[k], range[0], range[1]));
+    return;
+  }
+}
+
+void read_kappa_parameter(LoadContext& context, const core::YamlNode& node, PlannerInfo& planner) {
+  const std::string name = node.scalar.substr(1);
+  const int index = context.behavior.find_parameter(name);
+  if (index < 0) {
+    context.error(node.mark, "unknown-parameter",
+                  fmt::format("unknown parameter '${}'{}", name,
+                              core::did_you_mean(name, context.parameter_names())));
+    return;
+  }
+  const ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
+  if (info.size > 2) {
+    context.error(node.mark, "size",
+                  fmt::format("kappa has 1 or 2 values, '{}' has {}", name, info.size));
+    return;
+  }
+  if (!info.bare && !(info.dimension == core::kNone)) {
+    context.error(node.mark, "dimension",
+                  fmt::format("expected a number, got {}", core::dimension_name(info.dimension)));
+    return;
+  }
+  const std::array<double, 2> range =
+      info.has_range() ? std::array<double, 2>{info.min, info.max} : kKappaRange;
+  check_kappa(context, node.mark, &context.behavior.values[static_cast<std::size_t>(info.slot)],
+              info.size, range);
+  planner.kappa_parameter = index;
+  planner.kappa_slot = info.slot;
+  planner.kappa_size = info.size;
+}
+
+// `[x, y]`, one number, by axis, `$parameter`, or any of the first under `value` with a `range`.
+void read_kappa(LoadContext& context, const core::YamlNode& map, PlannerInfo& planner) {
+  const core::YamlNode* node = map.find("kappa");
+  if (node == nullptr) return;
+  if (core::is_reference(*node)) {
+    read_kappa_parameter(context, *node, planner);
+    return;
+  }
+  std::array<double, 2> range = kKappaRange;
+  if (node->find("value") != nullptr) {
+    core::check_keys(*node, kKappaKeys, context.diagnostics);
+    if (const auto* given = node->find("range")) {
+      range = core::read_range(*given, core::kNone, context.diagnostics).value_or(range);
+    }
+    node = node->find("value");
+  }
+  const auto values = core::read_vector(*node, core::kNone, kAxes, context.diagnostics);
+  if (!values) return;
+  planner.spec.kappa = {(*values)[0], (*values)[1]};
+  check_kappa(context, node->mark, values->data(), 2, range);
+}
+
 void read_limit(LoadContext& context, const core::YamlNode& map, const char* key,
                 core::Dimension dimension, double& out) {
   const core::YamlNode* node = map.find(key);
@@ -46,7 +113,7 @@ void read_goal(LoadContext& context, const core::YamlNode& map, PlannerInfo& pla
   }
   const ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
   if (info.size != 2) {
-    context.error(node->mark, "bad-size",
+    context.error(node->mark, "size",
                   fmt::format("a goal has 2 values, '{}' has {}", name, info.size));
   } else if (!info.bare && !(info.dimension == core::kLength)) {
     context.error(node->mark, "dimension",
@@ -87,17 +154,15 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
   if (!core::check_name(entry, context.diagnostics, "the name of a planner")) return;
   const core::YamlNode& map = entry.value;
   if (!core::expect_map(map, "a planner", context.diagnostics)) return;
-  const core::YamlNode* type = core::require_key(map, "type", context.diagnostics);
-  if (type == nullptr ||
-      !core::read_choice(*type, kPlannerTypes, context.diagnostics, "a type of planner")) {
-    return;
+  if (const auto* type = core::require_key(map, "type", context.diagnostics)) {
+    core::read_choice(*type, kPlannerTypes, context.diagnostics, "a type of planner");
   }
   core::check_keys(map, kPlannerKeys, context.diagnostics);
   PlannerInfo planner;
   planner.name = entry.key;
   planner.mark = map.find("kappa") != nullptr ? map.find("kappa")->mark : entry.key_mark;
   FootPlannerSpec& spec = planner.spec;
-  read_pair(context, map, "kappa", core::kNone, spec.kappa);
+  read_kappa(context, map, planner);
   read_pair(context, map, "reversal", core::kTime, spec.reversal);
   for (const double time : spec.reversal) {
     if (time > 0.0) continue;

@@ -120,13 +120,20 @@ const TaskTypeInfo* find_task_type(std::string_view name) {
   return nullptr;
 }
 
+const TaskTypeInfo& task_type_info(TaskType type) {
+  const auto& types = task_types();
+  return *std::find_if(types.begin(), types.end(),
+                       [type](const TaskTypeInfo& info) { return info.type == type; });
+}
+
 const TaskTypeInfo* require_task_type(const core::YamlNode& node, core::Diagnostics& diagnostics) {
+  if (!core::expect_scalar(node, "a type of task", diagnostics)) return nullptr;
   if (const TaskTypeInfo* type = find_task_type(node.scalar)) return type;
   std::vector<std::string> names;
   for (const TaskTypeInfo& type : task_types()) names.emplace_back(type.name);
-  diagnostics.error(
-      node.mark, "unknown-task-type",
-      fmt::format("unknown task type '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
+  diagnostics.error(node.mark, "unknown-task-type",
+                    fmt::format("unknown task type '{}'{}", node.scalar,
+                                core::did_you_mean_or_list(node.scalar, names)));
   return nullptr;
 }
 

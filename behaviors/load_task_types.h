@@ -25,6 +25,7 @@ struct TaskTypeInfo {
 
 // nullptr for a type that is unknown.
 const TaskTypeInfo* find_task_type(std::string_view name);
+const TaskTypeInfo& task_type_info(tasks::TaskType type);
 // The same, with an error at the node.
 const TaskTypeInfo* require_task_type(const core::YamlNode& node, core::Diagnostics& diagnostics);
 // Names of all axes that a type may have on this robot.

@@ -15,15 +15,16 @@ using tasks::TaskType;
 
 // Index into the model's points: contacts first, then the robot's points.
 int find_point(LoadContext& context, const core::YamlNode& node) {
+  if (!core::expect_scalar(node, "the name of a point", context.diagnostics)) return -1;
   const auto& robot = context.behavior.robot;
   std::vector<std::string> names = context.contact_names();
   for (const auto& point : robot.points) names.push_back(point.name);
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (node.is_scalar() && names[k] == node.scalar) return static_cast<int>(k);
+    if (names[k] == node.scalar) return static_cast<int>(k);
   }
-  context.error(
-      node.mark, "unknown-point",
-      fmt::format("unknown point '{}'{}", node.scalar, core::did_you_mean(node.scalar, names)));
+  context.error(node.mark, "unknown-point",
+                fmt::format("unknown point '{}'{}", node.scalar,
+                            core::did_you_mean_or_list(node.scalar, names)));
   return -1;
 }
 
@@ -92,6 +93,24 @@ void report_no_gains(LoadContext& context, const DraftItem& item, const Draft& d
                                              item.name, tables));
 }
 
+// kp without kd, and ki without kp, in all layers together.
+void warn_incomplete_gains(LoadContext& context, const std::vector<GainSource>& sources) {
+  const auto node_of = [&](const char* gain) -> const core::YamlNode* {
+    for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
+      if (source->entry->node->find(gain) != nullptr) return source->entry->node;
+    }
+    return nullptr;
+  };
+  const core::YamlNode* p = node_of("kp");
+  if (const core::YamlNode* i = node_of("ki"); i != nullptr && p == nullptr) {
+    context.absence(i->mark, "incomplete-gains",
+                    "ki without kp cannot be stable: is a kp missing?");
+  } else if (p != nullptr && node_of("kd") == nullptr) {
+    context.absence(p->mark, "incomplete-gains",
+                    "kp without kd never comes to rest: add a kd (`kd: 0` if it is meant)");
+  }
+}
+
 // kp, ki and kd, each from the innermost layer that names it.
 void compile_gains(LoadContext& context, const DraftItem& item, const Draft& draft,
                    const TaskTypeInfo& type, const AxesScope& axes, std::vector<AxisSpec>& out) {
@@ -101,6 +120,7 @@ void compile_gains(LoadContext& context, const DraftItem& item, const Draft& dra
     if (context.diagnostics.error_count() == before) report_no_gains(context, item, draft);
     return;
   }
+  warn_incomplete_gains(context, sources);
   for (std::size_t k = 0; k < kGainNames.size(); ++k) {
     const auto source = std::find_if(sources.rbegin(), sources.rend(), [&](const auto& s) {
       return s.entry->node->find(kGainNames[k]) != nullptr;
@@ -108,10 +128,10 @@ void compile_gains(LoadContext& context, const DraftItem& item, const Draft& dra
     if (source == sources.rend()) continue;
     const core::Mark mark = source->entry->node->find(kGainNames[k])->mark;
     if (type.type == TaskType::joint_damping && k < 2) {
-      context.error(mark, "no-effect",
+      context.error(mark, "misplaced-key",
                     fmt::format("joint_damping has kd only, no {}", kGainNames[k]));
     } else if (type.type == TaskType::centroidal_angular_momentum && k == 1) {
-      context.error(mark, "no-effect",
+      context.error(mark, "misplaced-key",
                     "an angular momentum has kd (on its error) and kp (on that error's integral), "
                     "no ki");
     }
@@ -131,9 +151,11 @@ void compile_frame(LoadContext& context, const DraftItem& item, const TaskTypeIn
   const DraftKey* key = item.find("frame");
   if (key == nullptr) return;
   if (std::find(type.frames.begin(), type.frames.end(), key->node->scalar) == type.frames.end()) {
-    context.error(key->node->mark, "unknown-frame",
-                  fmt::format("a {} has the frame {}, got {}", type.name,
-                              fmt::join(type.frames, " or "), core::describe(*key->node)));
+    if (core::read_choice(*key->node, kFrames, context.diagnostics, "a frame")) {
+      context.error(key->node->mark, "misplaced-name",
+                    fmt::format("a {} has the frame {}, got {}", type.name,
+                                fmt::join(type.frames, " or "), core::describe(*key->node)));
+    }
     return;
   }
   spec.frame = frame_of(key->node->scalar);
@@ -142,7 +164,7 @@ void compile_frame(LoadContext& context, const DraftItem& item, const TaskTypeIn
     return std::find(axes.begin(), axes.end(), axis) != axes.end();
   };
   if (turns && spec.frame == tasks::Frame::world && has(0) != has(1)) {
-    context.error(key->node->mark, "bad-value",
+    context.error(key->node->mark, "misplaced-name",
                   "about the world's axes roll and pitch go together: one alone means nothing at "
                   "another yaw (take `frame: heading`)");
   }
@@ -166,13 +188,27 @@ void compile_limits(LoadContext& context, const DraftItem& item, const char* nam
   }
 }
 
+// The integral is what ki acts on; of an angular momentum, kp.
+void warn_idle_limit(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type,
+                     const std::vector<AxisSpec>& specs) {
+  const DraftKey* limit = item.find("integral_limit");
+  const bool momentum = type.type == TaskType::centroidal_angular_momentum;
+  const bool integrates = std::any_of(specs.begin(), specs.end(), [&](const AxisSpec& axis) {
+    return momentum ? axis.kp >= 0 || axis.computed[0] >= 0 : axis.ki >= 0 || axis.computed[1] >= 0;
+  });
+  if (limit == nullptr || integrates) return;
+  context.warning(limit->node->mark, "no-effect",
+                  fmt::format("`integral_limit` without {} has no effect", momentum ? "kp" : "ki"));
+}
+
 void check_task_keys(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type) {
   const std::vector<std::string> known = core::key_names(kTaskKeys, type.name);
   core::YamlNode map;  // the merged keys, for check_keys
   map.kind = core::YamlNode::Kind::map;
   for (const DraftKey& key : item.keys) {
+    if (key.key == "doc") core::check_doc(*key.node, context.diagnostics);
     if (std::find(known.begin(), known.end(), key.key) != known.end()) continue;
-    map.entries.push_back({key.key, key.node->mark, false, {}});
+    map.entries.push_back({key.key, key.mark, false, {}});
   }
   core::check_keys(map, known, context.diagnostics);
 }
@@ -203,7 +239,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
     }
     context.error(item.mark, "unknown-task",
                   fmt::format("task '{}' is not in the stack in force, and has no type{}",
-                              item.name, core::did_you_mean(item.name, names)));
+                              item.name, core::did_you_mean_or_list(item.name, names)));
     return std::nullopt;
   }
   const TaskTypeInfo* type = require_task_type(*type_key->node, context.diagnostics);
@@ -222,9 +258,19 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
     if (spec.point < 0) return std::nullopt;
   }
   const DraftKey* axes_key = item.find(type->joints ? "joints" : "axes");
+  const int before = context.diagnostics.error_count();
   const std::vector<int> axes = read_axes(
       context, *type, axes_key == nullptr ? nullptr : axes_key->node, context.diagnostics);
-  if (axes.empty()) return std::nullopt;
+  if (context.diagnostics.error_count() != before) return std::nullopt;
+  if (axes.empty()) {
+    if (axes_key != nullptr && axes_key->node->is_sequence() && axes_key->node->items.empty()) {
+      context.error(axes_key->node->mark, "empty-value",
+                    fmt::format("`{}: []` leaves nothing to control: name some, or remove the task "
+                                "with `{}: off`",
+                                axes_key->key, item.name));
+    }
+    return std::nullopt;
+  }
   const std::vector<std::string> all = all_axes(context, *type);
   std::vector<std::string> names;
   std::vector<core::Dimension> positions;
@@ -250,6 +296,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
   compile_limits(context, item, "acceleration_limit", scope, &AxisSpec::acceleration_limit, specs);
   scope.dimensions = scaled(positions, core::kTime);
   compile_limits(context, item, "integral_limit", scope, &AxisSpec::integral_limit, specs);
+  warn_idle_limit(context, item, *type, specs);
   scope.dimensions.assign(positions.size(), core::kNone);
   compile_limits(context, item, "weight", scope, &AxisSpec::weight, specs);
   spec.instance = find_instance(context, item, spec.type, spec.point);

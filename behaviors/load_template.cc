@@ -58,17 +58,18 @@ const core::YamlNode* find_template(LoadContext& context, const core::YamlNode& 
   const core::YamlNode* templates = context.section("templates");
   const core::YamlNode* found =
       templates == nullptr || !name.is_scalar() ? nullptr : templates->find(name.scalar);
-  if (found != nullptr && found->is_map()) {
+  if (!core::expect_scalar(name, "the name of a template", context.diagnostics)) return nullptr;
+  if (found != nullptr) {
     context.used_templates.push_back(name.scalar);
-    return found;
+    return found->is_map() ? found : nullptr;  // reported by check_template
   }
   std::vector<std::string> names;
   if (templates != nullptr) {
     for (const auto& entry : templates->entries) names.push_back(entry.key);
   }
-  context.error(
-      name.mark, "unknown-template",
-      fmt::format("unknown template '{}'{}", name.scalar, core::did_you_mean(name.scalar, names)));
+  context.error(name.mark, "unknown-template",
+                fmt::format("unknown template '{}'{}", name.scalar,
+                            core::did_you_mean_or_list(name.scalar, names)));
   return nullptr;
 }
 
@@ -96,15 +97,16 @@ std::optional<Arguments> read_arguments(LoadContext& context, const core::YamlNo
       arguments.emplace_back(argument, *value);
       continue;
     }
+    good = false;
+    if (core::has_nearly(given, argument)) continue;
     context.error(name.mark, "missing-argument",
                   fmt::format("template '{}' needs the argument '{}'", name.scalar, argument));
-    good = false;
   }
   for (const auto& entry : given.entries) {
     if (std::find(names.begin(), names.end(), entry.key) != names.end()) continue;
     context.error(entry.key_mark, "unknown-argument",
                   fmt::format("template '{}' has no argument '{}'{}", name.scalar, entry.key,
-                              core::did_you_mean(entry.key, names)));
+                              core::did_you_mean_or_list(entry.key, names)));
     good = false;
   }
   if (!good) return std::nullopt;
@@ -170,7 +172,10 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
   Arguments image;
   for (const auto& [key, value] : *arguments) image.emplace_back(key, image_of(context, value));
   const std::string first = arguments->front().second.scalar;
-  const std::string second = image.front().second.scalar;
+  std::string second = image.front().second.scalar;
+  // Without its robot, which was reported, nothing has an image: any name does to look at the rest.
+  if (context.behavior.has_robot && context.behavior.robot.joints.empty())
+    second = first + "_image";
   if (first == second) {
     context.error(arguments->front().second.mark, "mirror",
                   fmt::format("'{}' has no mirror image: name it in the robot's symmetry", first));
@@ -217,6 +222,9 @@ void expand_children(LoadContext& context, StateSource& state, const core::YamlN
                      int depth) {
   if (states.is_null()) return;
   if (!core::expect_map(states, "states by name", context.diagnostics)) return;
+  if (states.entries.empty()) {
+    context.error(states.mark, "empty-value", "`states: {}` holds no state: leave it out");
+  }
   for (const core::YamlEntry& entry : states.entries) {
     if (!core::check_name(entry, context.diagnostics, "the name of a state")) continue;
     state.children.push_back(
@@ -242,12 +250,19 @@ StateSource expand(LoadContext& context, const std::string& name, core::Mark mar
     }
     return state;
   }
+  for (const char* key : {"use", "mirror", "with", "states"}) {
+    const core::YamlNode* node = state.keys.find(key);
+    if (node != nullptr && node->is_null()) {
+      core::report_expected(*node, fmt::format("a value after `{}`", key), context.diagnostics);
+    }
+  }
   const core::YamlNode use = take(state.keys, "use");
   const core::YamlNode mirror = take(state.keys, "mirror");
   const core::YamlNode with = take(state.keys, "with");
   const core::YamlNode* given = with.is_null() ? nullptr : &with;
   if (!use.is_null() && !mirror.is_null()) {
     context.error(mirror.mark, "mirror", "a state has 'use' or 'mirror', not both");
+    return state;
   } else if (!use.is_null()) {
     const core::YamlNode* body = find_template(context, use);
     const auto own = body == nullptr ? std::nullopt : read_arguments(context, *body, given, use);
@@ -257,7 +272,7 @@ StateSource expand(LoadContext& context, const std::string& name, core::Mark mar
     made.origin = instance_text(use, *own);
     return made;
   } else if (given != nullptr && mirror.is_null()) {
-    context.error(with.mark, "unknown-key", "'with' needs 'use' or 'mirror' beside it");
+    context.error(with.mark, "misplaced-key", "'with' needs 'use' or 'mirror' beside it");
   }
   const core::YamlNode states = take(state.keys, "states");
   if (!mirror.is_null()) {
@@ -280,9 +295,14 @@ void check_template(LoadContext& context, const core::YamlEntry& entry) {
     return;
   }
   const std::vector<std::string> parameters = context.parameter_names();
+  std::vector<std::string> seen;
   for (const core::YamlNode& item : args->items) {
     const auto name = core::read_name(item, context.diagnostics, "the name of an argument");
     if (!name) continue;
+    if (std::find(seen.begin(), seen.end(), *name) != seen.end()) {
+      context.error(item.mark, "duplicate", fmt::format("argument '{}' twice", *name));
+    }
+    seen.push_back(*name);
     if (*name == "side" ||
         std::find(parameters.begin(), parameters.end(), *name) != parameters.end()) {
       context.error(item.mark, "argument-name",
@@ -304,6 +324,7 @@ void check_resolved_text(LoadContext& context, const core::YamlNode& node, std::
     context.error(mark, "unresolved",
                   fmt::format("'${}' is neither a parameter nor an argument here{}", name,
                               core::did_you_mean(name, parameters)));
+    context.diagnostics.silence(mark);
   };
   if (node.is_scalar()) check(node.scalar, node.mark);
   for (const core::YamlNode& item : node.items) check_resolved_text(context, item, key);
@@ -342,7 +363,7 @@ void check_machine_names(LoadContext& context) {
   const auto& used = context.used_templates;
   for (const core::YamlEntry& entry : templates->entries) {
     if (std::find(used.begin(), used.end(), entry.key) != used.end()) continue;
-    context.warning(entry.key_mark, "unused",
+    context.absence(entry.key_mark, "unused",
                     fmt::format("template '{}' is never used, and not checked", entry.key));
   }
 }

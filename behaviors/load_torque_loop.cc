@@ -46,6 +46,9 @@ void load_torque_loops(LoadContext& context) {
     if (!core::check_name(entry, context.diagnostics, "the name of a torque loop")) continue;
     if (!core::expect_map(entry.value, "a map with p, i, d", context.diagnostics)) continue;
     core::check_keys(entry.value, kTorqueLoopKeys, context.diagnostics);
+    if (entry.value.entries.empty()) {
+      context.error(entry.value.mark, "missing-key", "expected at least one of p, i, d");
+    }
     context.behavior.torque_loops.push_back(
         {entry.key, read_joints(context, entry.value.find("p"), core::kNone),
          read_joints(context, entry.value.find("i"), core::kRate),

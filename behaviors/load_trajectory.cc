@@ -243,7 +243,7 @@ void check_surface(LoadContext& context, const Words& words, const AxesScope& ax
                      spec.type == tasks::TaskType::point_position ||
                      spec.type == tasks::TaskType::frame_pose;
   if (!place || axes.names != std::vector<std::string>{"z"} || spec.frame != tasks::Frame::world) {
-    context.error(words.find("trajectory")->mark, "bad-value",
+    context.error(words.find("trajectory")->mark, "misplaced-name",
                   "the surface is a height of the world: it goes with `axes: [z]` and `frame: "
                   "world` of a position");
   }

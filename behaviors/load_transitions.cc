@@ -46,7 +46,7 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
   scope.state = state;
   if (on != nullptr) {
     transition.has_event = true;
-    load_patterns(context, state, *on, context.patterns, index);
+    load_patterns(context, state, *on, index);
   }
   if (when != nullptr) transition.guard = context.compile_condition(*when, scope);
   if (after != nullptr) transition.after = context.compile_time(*after, scope);
@@ -57,7 +57,9 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
   if (const auto* actions = node.find("do")) {
     transition.actions = load_actions(context, *actions, state);
   }
-  if (const auto* reason = node.find("reason")) transition.reason = reason->scalar;
+  if (const auto* reason = node.find("reason")) {
+    if (core::check_doc(*reason, context.diagnostics)) transition.reason = reason->scalar;
+  }
   finish_domain(context, transition);
   context.behavior.transitions.push_back(std::move(transition));
 }
@@ -68,6 +70,7 @@ void load_timed(LoadContext& context, int state) {
   const core::YamlNode* to = keys_of(context, state).find("to");
   if (after == nullptr && to == nullptr) return;
   if (after == nullptr || to == nullptr) {
+    if (core::has_nearly(keys_of(context, state), after == nullptr ? "after" : "to")) return;
     context.error(
         (after == nullptr ? to : after)->mark, "missing-key",
         after == nullptr ? "`to` needs `after` beside it" : "`after` needs `to` beside it");

@@ -26,7 +26,8 @@ void load_robot(LoadContext& context, const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const std::string beside = folder.empty() ? name : folder + "/" + name;
   std::string file = model::find_robot_file(name, search);
-  if (file.empty() && std::filesystem::is_regular_file(beside)) file = beside;
+  std::error_code unreadable;  // a name too long for a path, a folder closed to us
+  if (file.empty() && std::filesystem::is_regular_file(beside, unreadable)) file = beside;
   if (file.empty()) {
     context.error(node == nullptr ? core::Mark{} : node->mark, "unknown-robot",
                   fmt::format("unknown robot '{}': no such file, and no robots/{}/robot.yaml in {}",
@@ -37,22 +38,22 @@ void load_robot(LoadContext& context, const std::string& path) {
   context.behavior.rate_mhz = context.behavior.robot.rate_mhz;
 }
 
-// Whether later steps make sense: the tree of states stands, and the robot is known.
+// Whether later steps make sense: there is a tree of states, and the robot is known.
 bool load_structure(LoadContext& context, const std::string& path) {
   if (!core::check_kind(context.root, "behavior", 1, context.diagnostics)) return false;
   core::check_keys(context.root, kBehaviorKeys, context.diagnostics);
   apply_overrides(context);
   const int before = context.diagnostics.error_count();
   load_robot(context, path);
-  if (context.diagnostics.error_count() != before) return false;
+  const bool robot = context.diagnostics.error_count() == before;
   load_parameters(context);
   const int parameters = context.diagnostics.error_count();
   expand_machine(context);
-  if (context.diagnostics.error_count() != parameters) return false;
+  context.states_missing = context.diagnostics.error_count() != parameters;
+  if (context.machine.name.empty()) return false;
   check_machine_names(context);
-  const int expanded = context.diagnostics.error_count();
   load_states(context);
-  return context.diagnostics.error_count() == expanded;
+  return robot;
 }
 
 void load_contents(LoadContext& context) {
@@ -66,6 +67,7 @@ void load_contents(LoadContext& context) {
   load_invokes(context);
   load_control(context);
   finish_events(context);
+  warn_absences(context);
 }
 
 std::unique_ptr<Behavior> load(core::YamlNode root, const std::string& path,
@@ -83,8 +85,9 @@ bool compile_behavior(LoadContext& context, core::YamlNode root, const std::stri
   if (root.is_null() && context.diagnostics.has_errors()) return false;
   const int before = context.diagnostics.error_count();
   context.root = std::move(root);
-  if (const auto* name = context.section("name"); name != nullptr && name->is_scalar()) {
-    context.behavior.name = name->scalar;
+  if (const auto* name = context.section("name")) {
+    context.behavior.name =
+        core::read_text(*name, context.diagnostics, "a name").value_or(context.behavior.name);
   }
   if (load_structure(context, path)) load_contents(context);
   return context.diagnostics.error_count() == before;

@@ -10,6 +10,16 @@ std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 constexpr std::size_t kEventsPerInvoke = 64;
 }  // namespace
 
+FootPlannerSpec spec_in_force(const PlannerInfo& planner,
+                              std::span<const double> parameters) noexcept {
+  FootPlannerSpec spec = planner.spec;
+  if (planner.kappa_slot < 0) return spec;
+  for (int k = 0; k < 2; ++k) {
+    spec.kappa[at(k)] = parameters[at(planner.kappa_slot + (planner.kappa_size > 1 ? k : 0))];
+  }
+  return spec;
+}
+
 PlannerCalls::PlannerCalls(const Behavior& behavior, Statechart& statechart,
                            core::SignalTable& signals, std::span<const double> parameters)
     : behavior_(behavior),
@@ -129,7 +139,7 @@ void PlannerCalls::replace_late(const InvokeInfo& invoke, const Outstanding& req
   input.switch_in =
       std::max(0.0, request.switch_time - static_cast<double>(context.tick) * context.period);
   input.swing_side = lateral_[at(invoke.swing)] < lateral_[at(invoke.stance)] ? -1.0 : 1.0;
-  const FootPlan plan = plan_foot(planner.spec, input);
+  const FootPlan plan = plan_foot(spec_in_force(planner, parameters_), input);
   if (!plan.ok) {
     emit(planner.failed_event);
     return;

@@ -13,6 +13,10 @@
 
 namespace footfall::behaviors {
 
+// The planner's settings in this tick: `kappa: $name` reads its parameter, live.
+FootPlannerSpec spec_in_force(const PlannerInfo& planner,
+                              std::span<const double> parameters) noexcept;
+
 class PlannerCalls {
  public:
   PlannerCalls(const Behavior& behavior, Statechart& statechart, core::SignalTable& signals,

@@ -143,6 +143,9 @@ SignalLayout register_signals(const model::RobotDescription& robot,
   layout.torque_step = table.add("torque.step", core::kTorque,
                                  "largest torque step of a joint between neighbouring ticks");
   layout.faults = table.add("faults", core::kNone, "faults counted so far");
+  layout.tick_late =
+      table.add("tick.late", core::kNone,
+                "periods skipped so far because a tick came too late; 0 in lock-step");
   layout.goal = add_axes(table, "goal", core::kLength, "where it was told to stay", {"x", "y"});
   return layout;
 }

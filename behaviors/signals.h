@@ -74,6 +74,7 @@ struct SignalLayout {
   int transition_weight = -1;  // of the other control law, 0..1
   int torque_step = -1;        // largest |tau - tau_previous| over joints, N m
   int faults = -1;             // faults counted so far
+  int tick_late = -1;          // periods skipped so far because a tick came too late
   int goal = -1;               // goal.{x,y}: where it was told to stay, m
 };
 

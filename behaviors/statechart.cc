@@ -26,10 +26,13 @@ int EventQueue::pop() noexcept {
 
 Statechart::Statechart(const Chart& chart, const double* signals, std::span<double> parameters)
     : chart_(chart),
+      index_(chart),
       parameters_(parameters),
       active_(chart.states.size()),
+      configuration_(chart.states.size()),
       entering_(chart.states.size()),
       leaving_(chart.states.size()),
+      asked_(chart.states.size()),
       entry_ticks_(chart.states.size()),
       entry_serials_(chart.states.size()),
       control_before_(chart.states.size()),
@@ -42,6 +45,7 @@ Statechart::Statechart(const Chart& chart, const double* signals, std::span<doub
       external_(kQueueCapacity) {
   active_list_.reserve(chart.states.size());
   atomic_list_.reserve(chart.states.size());
+  candidates_.reserve(chart.states.size() + 1);
   selected_.reserve(chart.states.size() + 1);
   marks_.reserve(kRecordCapacity);
   taken_.reserve(kRecordCapacity);
@@ -78,7 +82,7 @@ void Statechart::begin_tick(std::int64_t tick) noexcept {
 }
 
 bool Statechart::raise(int event) noexcept {
-  if (event < 0) return true;  // a name that nothing listens to
+  if (event < 0 || finished_) return true;  // nothing listens to it
   if (external_.push(event)) return true;
   faults_.add(core::Fault::event_overflow);
   overflowed_ = true;
@@ -107,37 +111,32 @@ void Statechart::run() noexcept {
   }
   safe_requested_ = false;
   while (!finished_) {
-    if (steps_ >= chart_.micro_steps) {  // the rest waits for the next tick
-      select(-1);
-      if (selected_.empty() && internal_.empty() && external_.empty()) return;
+    EventQueue* queue = nullptr;
+    select(-1);
+    while (selected_.empty()) {
+      queue = !internal_.empty() ? &internal_ : &external_;
+      if (queue->empty()) return;
+      select(queue->front());
+      if (selected_.empty()) take_event(*queue);  // an event that enables nothing is gone
+    }
+    if (steps_++ >= chart_.micro_steps) {  // the rest waits for the next tick
       execution_error();
       return;
     }
-    select(-1);
-    if (selected_.empty() && !internal_.empty()) {
-      select(take_event(internal_));
-      if (selected_.empty()) continue;
-    }
-    if (selected_.empty()) {
-      if (external_.empty()) return;
-      select(take_event(external_));
-      if (selected_.empty()) continue;
-    }
+    if (queue != nullptr) take_event(*queue);
     micro_step();
-    ++steps_;
   }
 }
 
-// The next event of a queue; scripts that handle it are asked to.
-int Statechart::take_event(EventQueue& queue) noexcept {
+// Takes the next event from a queue; scripts that handle it are asked to.
+void Statechart::take_event(EventQueue& queue) noexcept {
   const int event = queue.pop();
-  if (chart_.script_events.empty() || chart_.script_events[idx(event)] == 0) return event;
+  if (chart_.script_events.empty() || chart_.script_events[idx(event)] == 0) return;
   if (script_requests_.size() < kRecordCapacity) {
     script_requests_.push_back({true, event});
   } else {
     faults_.add(core::Fault::event_overflow);
   }
-  return event;
 }
 
 // SCXML's microstep: exit all, then the transitions' actions, then enter all.
@@ -148,30 +147,23 @@ void Statechart::micro_step() noexcept {
     if (info.after >= 0 && !info.has_event) timer_taken_[idx(t)] = 1;
     if (info.targets.count > 0) mark_exits(domain(t));
   }
-  // Entry sets before the exits are carried out: the history recorded by this very exit counts, so
-  // it is taken first, as in Appendix D.
-  for (const int s : active_list_) {
-    if (leaving_[idx(s)] == 0) continue;
-    for (int c = s + 1; c < state(s).end; c = state(c).end) {
-      if (state(c).history >= 0) record_history(c);
-    }
-  }
+  // Histories before the exits are carried out, and before the entries read them: as in Appendix D.
+  leaving_.for_each([this](int s) {
+    const Range own = index_.own_histories[idx(s)];
+    for (int k = own.first; k < own.end(); ++k) record_history(index_.histories[idx(k)]);
+  });
   exit_states();
   for (const int t : selected_) {
     if (taken_.size() < kRecordCapacity) taken_.push_back(t);
     run_actions(chart_.transitions[idx(t)].actions);
   }
   for (const int t : selected_) compute_entries(t);
-  for (std::size_t s = 0; s < entering_.size(); ++s) {
-    if (entering_[s] != 0) control_before_[s] = before;
-  }
+  entering_.for_each([this, before](int s) { control_before_[idx(s)] = before; });
   enter_states();
 }
 
 void Statechart::mark_exits(int domain) noexcept {
-  for (const int s : active_list_) {
-    if (chart_.is_descendant(s, domain)) leaving_[idx(s)] = 1;
-  }
+  leaving_.insert_range(configuration_, domain + 1, state(domain).end);
 }
 
 void Statechart::record_history(int history) noexcept {
@@ -189,35 +181,34 @@ void Statechart::record_history(int history) noexcept {
 }
 
 void Statechart::exit_states() noexcept {
-  for (auto s = active_list_.rbegin(); s != active_list_.rend(); ++s) {
-    if (leaving_[idx(*s)] == 0) continue;
-    run_actions(state(*s).on_exit);
-    active_[idx(*s)] = 0;
-  }
-  std::fill(leaving_.begin(), leaving_.end(), std::uint8_t{0});
+  leaving_.for_each_reverse([this](int s) {
+    run_actions(state(s).on_exit);
+    active_[idx(s)] = 0;
+    configuration_.erase(s);
+  });
+  leaving_.clear();
 }
 
 void Statechart::enter_states() noexcept {
-  for (std::size_t s = 0; s < entering_.size(); ++s) {
-    if (entering_[s] != 0) enter_state(static_cast<int>(s));
-  }
-  std::fill(entering_.begin(), entering_.end(), std::uint8_t{0});
+  entering_.for_each([this](int s) { enter_state(s); });
+  entering_.clear();
   refresh_lists();
 }
 
 void Statechart::enter_state(int s) noexcept {
   const StateInfo& info = state(s);
   active_[idx(s)] = 1;
+  configuration_.insert(s);
   entry_ticks_[idx(s)] = context_.tick;
   ++entry_serials_[idx(s)];
   run_actions(info.on_entry);
-  for (int t = info.transitions.first; t < info.transitions.end(); ++t) {
-    const TransitionInfo& transition = chart_.transitions[idx(t)];
-    if (transition.after < 0) continue;
-    timer_taken_[idx(t)] = 0;
-    const double seconds = evaluate(chart_.expressions, transition.after, context_);
+  const Range timers = index_.state_timers[idx(s)];
+  for (int k = timers.first; k < timers.end(); ++k) {
+    const std::size_t t = idx(index_.timers[idx(k)]);
+    timer_taken_[t] = 0;
+    const double seconds = evaluate(chart_.expressions, chart_.transitions[t].after, context_);
     const std::int64_t periods = periods_of(seconds, chart_.rate_mhz);
-    deadlines_[idx(t)] = periods < 0 ? -1 : context_.tick + periods;
+    deadlines_[t] = periods < 0 ? -1 : context_.tick + periods;
     if (periods < 0) execution_error();
   }
   if (info.kind == StateKind::final) after_final(s);
@@ -260,14 +251,12 @@ void Statechart::refresh_lists() noexcept {
   active_list_.clear();
   atomic_list_.clear();
   control_ = 0;
-  for (std::size_t s = 0; s < active_.size(); ++s) {
-    if (active_[s] == 0) continue;
-    const int index = static_cast<int>(s);
-    active_list_.push_back(index);
-    const StateKind kind = state(index).kind;
-    if (kind == StateKind::atomic || kind == StateKind::final) atomic_list_.push_back(index);
-    control_ += state(index).control_weight;
-  }
+  configuration_.for_each([this](int s) {
+    active_list_.push_back(s);
+    const StateKind kind = state(s).kind;
+    if (kind == StateKind::atomic || kind == StateKind::final) atomic_list_.push_back(s);
+    control_ += state(s).control_weight;
+  });
 }
 
 void Statechart::run_actions(Range actions) noexcept {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "behaviors/chart.h"
+#include "behaviors/chart_index.h"
 #include "core/fault.h"
 
 namespace footfall::behaviors {
@@ -25,6 +26,7 @@ class EventQueue {
   explicit EventQueue(int capacity) : items_(static_cast<std::size_t>(capacity)) {}
   bool empty() const noexcept { return count_ == 0; }
   bool push(int event) noexcept;
+  int front() const noexcept { return items_[static_cast<std::size_t>(first_)]; }
   int pop() noexcept;
 
  private:
@@ -77,9 +79,10 @@ class Statechart {
 
   // Selection (statechart_select.cc).
   void select(int event) noexcept;  // -1: event-less
-  bool enabled(int transition, int event) const noexcept;
+  void consider(int s, int event) noexcept;
+  bool enabled(const Trigger& trigger, int event) const noexcept;
   int domain(int transition) const noexcept;
-  void add_if_not_preempted(int transition) noexcept;
+  void remove_conflicting() noexcept;
   int effective_targets(const TransitionInfo& transition, int* out) const noexcept;
 
   // Execution (statechart.cc).
@@ -95,7 +98,7 @@ class Statechart {
   void run_actions(Range actions) noexcept;
   bool run_action(const ActionInfo& action) noexcept;
   bool call(int index) noexcept;
-  int take_event(EventQueue& queue) noexcept;
+  void take_event(EventQueue& queue) noexcept;
   void raise_internal(int event) noexcept;
   void execution_error() noexcept;
 
@@ -107,15 +110,20 @@ class Statechart {
   void add_targets(Range targets, int ancestor) noexcept;
 
   const Chart& chart_;
+  const ChartIndex index_;
   std::span<double> parameters_;
   EvaluationContext context_;
-  std::vector<std::uint8_t> active_, entering_, leaving_;
+  std::vector<std::uint8_t> active_;  // by state
+  StateSet configuration_, entering_, leaving_;
+  std::vector<std::uint64_t> asked_;  // by state: the selection that asked it last
+  std::uint64_t selection_ = 0;
   std::vector<std::int64_t> entry_ticks_;
   std::vector<std::uint32_t> entry_serials_;
   std::vector<int> control_before_;
   std::vector<std::int64_t> deadlines_;    // by transition with `after`; tick at which it holds
   std::vector<std::uint8_t> timer_taken_;  // by transition: event-less timer used up
   std::vector<int> active_list_, atomic_list_;
+  std::vector<int> candidates_;      // enabled transitions, conflicts and all
   std::vector<int> selected_;        // transitions of this micro step
   std::vector<int> history_values_;  // by slot, states.size() each
   std::vector<int> history_counts_;  // by slot, 0: never left

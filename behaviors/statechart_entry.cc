@@ -1,5 +1,5 @@
 // Which states are entered: SCXML's computeEntrySet, addDescendantStatesToEnter and
-// addAncestorStatesToEnter, on one flag a state. Recursion is bounded by the depth of the chart.
+// addAncestorStatesToEnter, on one bit a state. Recursion is bounded by the depth of the chart.
 #include "behaviors/statechart.h"
 
 namespace footfall::behaviors {
@@ -34,14 +34,14 @@ void Statechart::add_descendants(int s) noexcept {
     if (stored == 0) add_targets(info.initial, info.parent);
     return;
   }
-  entering_[idx(s)] = 1;
+  entering_.insert(s);
   if (info.kind == StateKind::compound) add_targets(info.initial, s);
   if (info.kind == StateKind::parallel) add_regions(s);
 }
 
 void Statechart::add_ancestors(int s, int ancestor) noexcept {
   for (int a = state(s).parent; a > ancestor; a = state(a).parent) {
-    entering_[idx(a)] = 1;
+    entering_.insert(a);
     if (state(a).kind == StateKind::parallel) add_regions(a);
   }
 }
@@ -50,9 +50,7 @@ void Statechart::add_ancestors(int s, int ancestor) noexcept {
 void Statechart::add_regions(int parallel) noexcept {
   for (int child = parallel + 1; child < state(parallel).end; child = state(child).end) {
     if (state(child).history >= 0) continue;
-    bool any = false;
-    for (int s = child + 1; s < state(child).end && !any; ++s) any = entering_[idx(s)] != 0;
-    if (!any) add_descendants(child);
+    if (!entering_.any_in(child + 1, state(child).end)) add_descendants(child);
   }
 }
 

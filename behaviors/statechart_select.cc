@@ -1,35 +1,54 @@
 // Which transitions are taken: SCXML's selectTransitions and removeConflictingTransitions.
+#include <algorithm>
 #include <cmath>
 
 #include "behaviors/statechart.h"
 
 namespace footfall::behaviors {
 
+// Every active atomic state, in document order, takes the first enabled transition of its own or of
+// the nearest ancestor that has one. What an earlier atomic state has asked in this selection gives
+// the same answer again (conditions have no effect), so each state is asked once.
 void Statechart::select(int event) noexcept {
   selected_.clear();
-  for (const int atomic : atomic_list_) {
-    int chosen = -1;
-    for (int s = atomic; s >= 0 && chosen < 0; s = state(s).parent) {
-      const Range own = state(s).transitions;
-      for (int t = own.first; t < own.end() && chosen < 0; ++t) {
-        if (enabled(t, event)) chosen = t;
-      }
-    }
-    if (chosen >= 0) add_if_not_preempted(chosen);
+  candidates_.clear();
+  ++selection_;
+  for (const int atomic : atomic_list_) consider(atomic, event);
+  if (candidates_.size() > 1) {
+    remove_conflicting();
+  } else {
+    for (const int t : candidates_) selected_.push_back(t);
   }
 }
 
-bool Statechart::enabled(int transition, int event) const noexcept {
-  const TransitionInfo& t = chart_.transitions[idx(transition)];
-  if (t.has_event != (event >= 0)) return false;
-  if (t.has_event && !chart_.matches(transition, event)) return false;
-  if (t.after >= 0) {
-    const std::int64_t due = deadlines_[idx(transition)];
-    if (due < 0 || context_.tick < due) return false;
-    if (!t.has_event && timer_taken_[idx(transition)] != 0) return false;
+void Statechart::consider(int s, int event) noexcept {
+  const std::vector<int>& first = event < 0 ? index_.first_eventless : index_.first_on_event;
+  const std::vector<Range>& ranges = event < 0 ? index_.eventless : index_.on_event;
+  for (int at = first[idx(s)]; at >= 0;) {
+    if (asked_[idx(at)] == selection_) return;
+    asked_[idx(at)] = selection_;
+    const Range own = ranges[idx(at)];
+    for (int k = own.first; k < own.end(); ++k) {
+      const Trigger& trigger = index_.triggers[idx(k)];
+      if (!enabled(trigger, event)) continue;
+      candidates_.push_back(trigger.transition);
+      return;
+    }
+    const int parent = state(at).parent;
+    at = parent < 0 ? -1 : first[idx(parent)];
   }
-  if (t.guard < 0) return true;
-  const double value = evaluate(chart_.expressions, t.guard, context_);
+}
+
+bool Statechart::enabled(const Trigger& trigger, int event) const noexcept {
+  const int t = trigger.transition;
+  if (event >= 0 && !chart_.matches(t, event)) return false;
+  if (trigger.timed) {
+    const std::int64_t due = deadlines_[idx(t)];
+    if (due < 0 || context_.tick < due) return false;
+    if (event < 0 && timer_taken_[idx(t)] != 0) return false;
+  }
+  if (trigger.guard < 0) return true;
+  const double value = evaluate(chart_.expressions, trigger.guard, context_);
   return std::isfinite(value) && value != 0.0;
 }
 
@@ -63,29 +82,23 @@ int Statechart::domain(int transition) const noexcept {
 
 // Exit sets intersect exactly if one domain contains the other (a domain always has an active
 // child); then a descendant's transition beats its ancestor's, else the earlier one wins.
-void Statechart::add_if_not_preempted(int transition) noexcept {
-  const int mine = domain(transition);
-  const int source = chart_.transitions[idx(transition)].source;
-  std::size_t kept = 0;
-  for (const int other : selected_) {
-    if (other == transition) return;
+void Statechart::remove_conflicting() noexcept {
+  for (const int t1 : candidates_) {
+    const int mine = domain(t1);
+    const int source = chart_.transitions[idx(t1)].source;
+    const auto conflicts = [&](int t2) {
+      const int theirs = domain(t2);
+      return mine >= 0 && theirs >= 0 &&
+             (mine == theirs || chart_.is_descendant(mine, theirs) ||
+              chart_.is_descendant(theirs, mine));
+    };
+    const bool preempted = std::any_of(selected_.begin(), selected_.end(), [&](int t2) {
+      return conflicts(t2) && !chart_.is_descendant(source, chart_.transitions[idx(t2)].source);
+    });
+    if (preempted) continue;
+    selected_.erase(std::remove_if(selected_.begin(), selected_.end(), conflicts), selected_.end());
+    selected_.push_back(t1);
   }
-  for (const int other : selected_) {
-    const int theirs = domain(other);
-    const bool conflict = mine >= 0 && theirs >= 0 &&
-                          (mine == theirs || chart_.is_descendant(mine, theirs) ||
-                           chart_.is_descendant(theirs, mine));
-    if (conflict && !chart_.is_descendant(source, chart_.transitions[idx(other)].source)) return;
-  }
-  for (const int other : selected_) {
-    const int theirs = domain(other);
-    const bool conflict = mine >= 0 && theirs >= 0 &&
-                          (mine == theirs || chart_.is_descendant(mine, theirs) ||
-                           chart_.is_descendant(theirs, mine));
-    if (!conflict) selected_[kept++] = other;
-  }
-  selected_.resize(kept);  // never grows: no allocation
-  selected_.push_back(transition);
 }
 
 }  // namespace footfall::behaviors

@@ -73,6 +73,24 @@ std::optional<std::vector<TraceStep>> read_script(const core::YamlNode& root,
   return steps;
 }
 
+int index_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+// A script may raise what the behavior names nowhere: prefixes and `*` hear that too.
+Chart with_events_of(const Behavior& behavior, const std::vector<TraceStep>& steps) {
+  Chart chart = behavior;
+  for (const TraceStep& step : steps) {
+    if (step.after < 0.0 && index_of(chart.events, step.event) < 0) {
+      chart.events.push_back(step.event);
+    }
+  }
+  chart.match_events();
+  if (!chart.script_events.empty()) chart.script_events.resize(chart.events.size());
+  return chart;
+}
+
 }  // namespace
 
 std::optional<std::vector<TraceStep>> load_trace_script(const std::string& path,
@@ -100,10 +118,12 @@ std::vector<TraceStep> trace_events(std::string_view names) {
 }
 
 void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::ostream& out) {
+  const Chart chart = with_events_of(behavior, steps);
   core::SignalTable signals = behavior.signals;
   std::vector<double> values = behavior.values;
-  Statechart statechart(behavior, signals.values(), values);
+  Statechart statechart(chart, signals.values(), values);
   std::int64_t tick = 0;
+  double seconds = 0.0;  // delays add up before they are rounded up to whole periods
   const auto run = [&](int event) {
     statechart.begin_tick(tick);
     if (behavior.layout.time >= 0) {
@@ -117,11 +137,12 @@ void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::o
   write_line(behavior, statechart, nullptr, out);
   for (const TraceStep& step : steps) {
     if (step.after < 0.0) {
-      run(behavior.find_event(step.event));
+      run(index_of(chart.events, step.event));
       write_line(behavior, statechart, &step.event, out);
       continue;
     }
-    const std::int64_t end = tick + periods_of(step.after, behavior.rate_mhz);
+    seconds += step.after;
+    const std::int64_t end = periods_of(seconds, behavior.rate_mhz);
     while (tick < end) {
       ++tick;
       run(-1);

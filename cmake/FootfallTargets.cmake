@@ -4,16 +4,20 @@
 function(footfall_set_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
-    -Wno-restrict  # g++ 12 reports std::string operator+ falsely (GCC bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # g++ 12 reports std::string operator+ falsely (GCC bug 105651)
     $<$<BOOL:${FOOTFALL_WERROR}>:-Werror>)
 endfunction()
 
-# AddressSanitizer or UndefinedBehaviorSanitizer, as FOOTFALL_SANITIZE says.
+# AddressSanitizer or UndefinedBehaviorSanitizer, as FOOTFALL_SANITIZE says; for fuzzing both, and coverage.
 function(footfall_set_sanitizers target)
   if(FOOTFALL_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${FOOTFALL_SANITIZE} -fno-omit-frame-pointer
+    set(kinds ${FOOTFALL_SANITIZE})
+    if(FOOTFALL_FUZZ)
+      string(APPEND kinds ",undefined,fuzzer-no-link")
+    endif()
+    target_compile_options(${target} PRIVATE -fsanitize=${kinds} -fno-omit-frame-pointer
       -fno-sanitize-recover=all)
-    target_link_options(${target} PUBLIC -fsanitize=${FOOTFALL_SANITIZE})
+    target_link_options(${target} PUBLIC -fsanitize=${kinds})
   endif()
 endfunction()
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstdlib>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -47,6 +49,13 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+// Whether two words differ in nothing but capitals.
+bool same_letters(std::string_view a, std::string_view b) {
+  const auto small = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return small(x) == small(y); });
+}
+
 }  // namespace
 
 int Diagnostics::add_file(const std::string& path) {
@@ -56,36 +65,48 @@ int Diagnostics::add_file(const std::string& path) {
   return static_cast<int>(files_.size()) - 1;
 }
 
+bool Diagnostics::is_new(Mark mark, std::string_view id, const std::string& text) {
+  if (silent_.contains({mark.file, mark.line, mark.column})) return false;
+  return said_.insert(fmt::format("{} {} {} {} {}", mark.file, mark.line, mark.column, id, text))
+      .second;
+}
+
 void Diagnostics::error(Mark mark, std::string_view id, std::string text) {
+  if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::error, mark, std::string(id), std::move(text)});
   ++error_count_;
 }
 
 void Diagnostics::warning(Mark mark, std::string_view id, std::string text) {
+  if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::warning, mark, std::string(id), std::move(text)});
 }
 
-std::string Diagnostics::to_string() const {
-  std::vector<const Diagnostic*> sorted;
-  for (const Diagnostic& item : items_) sorted.push_back(&item);
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic* a, const Diagnostic* b) {
-    return std::tie(a->mark.file, a->mark.line, a->mark.column) <
-           std::tie(b->mark.file, b->mark.line, b->mark.column);
+std::vector<Diagnostic> Diagnostics::sorted() const {
+  const auto key = [](const Diagnostic& item) {
+    return std::tie(item.mark.file, item.mark.line, item.mark.column);
+  };
+  std::vector<Diagnostic> out = items_;
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  // An anchor read through several aliases reports the same problem several times.
+  const auto again = std::unique(out.begin(), out.end(), [&](const auto& a, const auto& b) {
+    return key(a) == key(b) && a.severity == b.severity && a.text == b.text;
   });
+  out.erase(again, out.end());
+  return out;
+}
+
+std::string Diagnostics::to_string() const {
   std::string out;
-  std::string previous;
-  for (const Diagnostic* item : sorted) {
-    std::string line;
-    if (item->mark.file >= 0 && item->mark.file < static_cast<int>(files_.size())) {
-      line += on_one_line(file(item->mark.file)) + ":";
-      if (item->mark.line > 0) line += fmt::format("{}:{}:", item->mark.line, item->mark.column);
-      line += " ";
+  for (const Diagnostic& item : sorted()) {
+    if (item.mark.file >= 0 && item.mark.file < static_cast<int>(files_.size())) {
+      out += on_one_line(file(item.mark.file)) + ":";
+      if (item.mark.line > 0) out += fmt::format("{}:{}:", item.mark.line, item.mark.column);
+      out += " ";
     }
-    line += item->severity == Severity::error ? "error: " : "warning: ";
-    line += on_one_line(item->text) + "\n";
-    // An anchor read through several aliases reports the same problem several times.
-    if (line != previous) out += line;
-    previous = std::move(line);
+    out += item.severity == Severity::error ? "error: " : "warning: ";
+    out += on_one_line(item.text) + "\n";
   }
   return out;
 }
@@ -93,12 +114,16 @@ std::string Diagnostics::to_string() const {
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLongestWord = 100;  // longer is not a typing mistake
   if (word.size() > kLongestWord) return {};
+  for (const std::string& candidate : candidates) {
+    if (same_letters(word, candidate)) return candidate;
+  }
   const int length = static_cast<int>(word.size());
   // A word of one letter is near to every other one: no guess is better than that.
   int best = std::min(std::max(1, length / 3), length - 1);
   std::string nearest;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongestWord) continue;
+    if (std::abs(static_cast<int>(candidate.size()) - length) > best) continue;
     const int distance = edit_distance(word, candidate);
     if (distance < best || (distance == best && nearest.empty())) {
       best = distance;
@@ -111,6 +136,16 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string nearest = nearest_name(word, candidates);
   return nearest.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", nearest);
+}
+
+std::string did_you_mean_or_list(std::string_view word,
+                                 const std::vector<std::string>& candidates) {
+  constexpr std::size_t kFew = 10;
+  const std::string hint = did_you_mean(word, candidates);
+  if (!hint.empty() || candidates.size() > kFew) return hint;
+  if (candidates.empty()) return " (there is none)";
+  return fmt::format(" (there {} {})", candidates.size() == 1 ? "is" : "are",
+                     fmt::join(candidates, ", "));
 }
 
 }  // namespace footfall::core

@@ -1,8 +1,11 @@
 // Load-time problems, collected and printed like a compiler's: file:line:col: error: text.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <unordered_set>
 #include <vector>
 
 namespace footfall::core {
@@ -29,18 +32,29 @@ class Diagnostics {
  public:
   // Registers a file and returns its index; the same path gives the same index.
   int add_file(const std::string& path);
+  // The same words about the same place are taken once: what is written once may be read often
+  // (templates, stacks, aliases).
   void error(Mark mark, std::string_view id, std::string text);
   void warning(Mark mark, std::string_view id, std::string text);
+  // What is said about this place from now on is a consequence of what was said already: dropped.
+  void silence(Mark mark) { silent_.insert({mark.file, mark.line, mark.column}); }
   bool has_errors() const { return error_count_ > 0; }
   int error_count() const { return error_count_; }
   const std::vector<Diagnostic>& all() const { return items_; }
+  int file_count() const { return static_cast<int>(files_.size()); }
   const std::string& file(int index) const { return files_[static_cast<std::size_t>(index)]; }
+  // In order of file and place; a problem that is reported again at its place is left out.
+  std::vector<Diagnostic> sorted() const;
   // `file:line:col: error: text`, one a line, in order of file and place.
   std::string to_string() const;
 
  private:
+  bool is_new(Mark mark, std::string_view id, const std::string& text);
+
   std::vector<std::string> files_;
   std::vector<Diagnostic> items_;
+  std::unordered_set<std::string> said_;  // place, id and text of every item
+  std::set<std::tuple<int, int, int>> silent_;
   int error_count_ = 0;
 };
 
@@ -48,5 +62,7 @@ class Diagnostics {
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
 // " (did you mean 'x'?)" or "".
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+// The same; where no candidate is near, all of them if they are few: " (there are a, b)".
+std::string did_you_mean_or_list(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace footfall::core

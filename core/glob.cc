@@ -19,11 +19,16 @@ int index_of(std::string_view name, const std::vector<std::string>& names) {
 void report_no_match(Mark mark, std::string_view pattern, const std::vector<std::string>& names,
                      std::string_view what, Diagnostics& diagnostics) {
   if (is_glob(pattern)) {
-    diagnostics.error(mark, "glob", fmt::format("'{}' matches no {}", pattern, what));
-  } else {
-    diagnostics.error(mark, "unknown-name",
-                      fmt::format("no {} '{}'{}", what, pattern, did_you_mean(pattern, names)));
+    diagnostics.error(
+        mark, "glob-unmatched",
+        fmt::format("'{}' matches no {}: there are {}", pattern, what, fmt::join(names, ", ")));
+    return;
   }
+  std::string hint = did_you_mean(pattern, names);
+  if (hint.empty()) hint = fmt::format(": there are {}", fmt::join(names, ", "));
+  const bool is_axis = what == "axis";
+  diagnostics.error(mark, is_axis ? "unknown-axis" : "unknown-name",
+                    fmt::format("no {} '{}'{}", what, pattern, hint));
 }
 
 }  // namespace
@@ -58,6 +63,10 @@ std::vector<const YamlEntry*> match_names(const YamlNode& map,
                                           std::string_view what, Diagnostics& diagnostics) {
   std::vector<const YamlEntry*> matched(names.size(), nullptr);
   if (!expect_map(map, fmt::format("a map by {}", what), diagnostics)) return matched;
+  if (map.entries.empty()) {
+    diagnostics.error(map.mark, "empty-value",
+                      fmt::format("an empty map says nothing about any {}: leave it out", what));
+  }
   for (const YamlEntry& entry : map.entries) {
     if (is_glob(entry.key)) continue;
     const int index = index_of(entry.key, names);
@@ -76,7 +85,7 @@ std::vector<const YamlEntry*> match_names(const YamlNode& map,
       if (matched[i] == nullptr) {
         matched[i] = &entry;
       } else if (is_glob(matched[i]->key)) {
-        diagnostics.error(entry.key_mark, "glob",
+        diagnostics.error(entry.key_mark, "glob-clash",
                           fmt::format("'{}' and '{}' (line {}) both match {} '{}'", entry.key,
                                       matched[i]->key, matched[i]->key_mark.line, what, names[i]));
       }
@@ -101,7 +110,7 @@ std::vector<int> expand_names(const YamlNode& list, const std::vector<std::strin
       if (std::find(indices.begin(), indices.end(), index) == indices.end()) {
         indices.push_back(index);
       } else if (!is_glob(*pattern)) {
-        diagnostics.error(item.mark, "twice", fmt::format("{} '{}' twice", what, *pattern));
+        diagnostics.error(item.mark, "duplicate", fmt::format("{} '{}' twice", what, *pattern));
       }
     }
     if (!any) report_no_match(item.mark, *pattern, names, what, diagnostics);

@@ -49,7 +49,6 @@ enum class ValueForm : std::uint8_t {
   one_or_list,
   pair,     // [A, B]
   pairs,    // [[A, B], ...]
-  by_name,  // {NAME: value, ...}
   by_axis,  // one number for all axes, a list, or a map by axis (of joints: with globs)
 };
 
@@ -57,6 +56,7 @@ enum class ValueForm : std::uint8_t {
 struct ValueSpec {
   ValueKind kind = ValueKind::none;
   ValueForm form = ValueForm::one;
+  bool named = false;                  // a map of them by names of the author's own
   bool expression = false;             // also `$parameter`, `= expression`, or a lone signal
   Dimension dimension{};               // of a quantity
   std::string_view what{};             // of a name or text: "a state"; else a closer word, or empty
@@ -94,12 +94,16 @@ struct KeySpec {
 
 // One kind of map.
 struct KeyTable {
-  std::string_view id;                   // short and unique in its file: "state"
-  std::string_view doc;                  // one line or a few
-  std::span<const KeySpec> keys;         // in the order in which one would write them
-  const KeyTable* more = nullptr;        // whose keys it has too
-  const ValueSpec* others = nullptr;     // what stands under names of the author's own
-  std::string_view others_name{};        // what those names are: "a task"
+  std::string_view id;                // short and unique in its file: "state"
+  std::string_view doc;               // one line or a few
+  std::span<const KeySpec> keys;      // in the order in which one would write them
+  const KeyTable* more = nullptr;     // whose keys it has too
+  const ValueSpec* others = nullptr;  // what stands under names of the author's own
+  std::string_view others_name{};     // what those names are: "a task"
+  // Of each of these lists of keys (blanks between) at least one must be there.
+  std::array<std::string_view, 2> one_of{};
+  bool part = false;                     // may be given in part, to be laid over another
+  bool empty = false;                    // nothing at all stands for the empty map
   std::string_view selector{};           // key whose word decides which keys there are: "type"
   std::span<const WordSpec> variants{};  // the words of the selector
 };
@@ -144,7 +148,10 @@ constexpr ValueSpec list(ValueSpec value) { return as(ValueForm::list, value); }
 constexpr ValueSpec one_or_list(ValueSpec value) { return as(ValueForm::one_or_list, value); }
 constexpr ValueSpec pair(ValueSpec value) { return as(ValueForm::pair, value); }
 constexpr ValueSpec pairs(ValueSpec value) { return as(ValueForm::pairs, value); }
-constexpr ValueSpec by_name(ValueSpec value) { return as(ValueForm::by_name, value); }
+constexpr ValueSpec by_name(ValueSpec value) {
+  value.named = true;
+  return value;
+}
 constexpr ValueSpec by_axis(ValueSpec value) { return as(ValueForm::by_axis, value); }
 constexpr ValueSpec computed(ValueSpec value) {  // an expression may stand there
   value.expression = true;

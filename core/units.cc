@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "core/unit_list.h"
+
 namespace footfall::core {
 
 namespace {
@@ -228,6 +230,14 @@ std::optional<Quantity> parse_quantity(std::string_view text) {
   }
   if (!std::isfinite(quantity.value)) return std::nullopt;
   return quantity;
+}
+
+std::vector<UnitInfo> all_units() {
+  std::vector<UnitInfo> units;
+  for (const UnitDefinition& unit : kUnits) {
+    units.push_back({unit.name, unit.numerator / unit.denominator, unit.dimension});
+  }
+  return units;
 }
 
 std::string dimension_name(Dimension dimension) {

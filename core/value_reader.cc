@@ -42,7 +42,7 @@ bool is_reserved(std::string_view text) {
 // The rule that a name breaks, or empty.
 std::string name_problem(std::string_view text) {
   if (is_reserved(text)) return fmt::format("'{}' cannot be a name", text);
-  if (!is_name(text)) return fmt::format("letters, digits and '_'");
+  if (!is_name(text)) return "letters, digits and '_', no digit first";
   return {};
 }
 
@@ -123,10 +123,27 @@ bool expect_sequence(const YamlNode& node, std::string_view what, Diagnostics& d
   return false;
 }
 
+bool expect_scalar(const YamlNode& node, std::string_view what, Diagnostics& diagnostics) {
+  if (node.is_scalar() && !node.scalar.empty()) return true;
+  report_expected(node, what, diagnostics);
+  return false;
+}
+
+bool check_doc(const YamlNode& node, Diagnostics& diagnostics) {
+  const bool plain = !node.quoted && (node.scalar == "true" || node.scalar == "false" ||
+                                      parse_quantity(node.scalar).has_value());
+  if (node.is_scalar() && !plain) return true;
+  report_expected(node, plain ? "a text (in quotes if it is a number)" : "a text", diagnostics);
+  return false;
+}
+
 void check_keys(const YamlNode& map, const std::vector<std::string>& known,
                 Diagnostics& diagnostics) {
   for (const YamlEntry& entry : map.entries) {
-    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) {
+      if (entry.key == "doc") check_doc(entry.value, diagnostics);
+      continue;
+    }
     std::string hint = did_you_mean(entry.key, known);
     if (hint.empty()) hint = fmt::format(", expected {}", alternatives(known));
     diagnostics.error(entry.key_mark, "unknown-key",
@@ -134,9 +151,15 @@ void check_keys(const YamlNode& map, const std::vector<std::string>& known,
   }
 }
 
+bool has_nearly(const YamlNode& map, std::string_view key) {
+  return std::any_of(map.entries.begin(), map.entries.end(), [key](const YamlEntry& entry) {
+    return entry.key != key && !nearest_name(entry.key, {std::string(key)}).empty();
+  });
+}
+
 const YamlNode* require_key(const YamlNode& map, std::string_view key, Diagnostics& diagnostics) {
   const YamlNode* const node = map.find(key);
-  if (node == nullptr) {
+  if (node == nullptr && !(diagnostics.has_errors() && has_nearly(map, key))) {
     diagnostics.error(map.mark, "missing-key", fmt::format("the key '{}' is missing", key));
   }
   return node;
@@ -234,12 +257,26 @@ bool is_name(std::string_view text) {
          !is_reserved(text);
 }
 
+bool is_dotted_name(std::string_view text) {
+  const std::string parts = std::string(kLetters) + std::string(kDigits) + "-";
+  bool begins = true;  // a part
+  for (const char c : text) {
+    if (c == '.' ? begins : parts.find(c) == std::string::npos) return false;
+    begins = c == '.';
+  }
+  return !begins;
+}
+
 std::optional<std::string> read_name(const YamlNode& node, Diagnostics& diagnostics,
                                      std::string_view what) {
   if (node.is_scalar() && is_name(node.scalar)) return node.scalar;
-  std::string expected(what);
-  if (node.is_scalar()) expected += " (" + name_problem(node.scalar) + ")";
-  report_expected(node, expected, diagnostics);
+  if (node.is_scalar() && !node.scalar.empty()) {
+    diagnostics.error(
+        node.mark, "name",
+        fmt::format("expected {} ({}), got {}", what, name_problem(node.scalar), describe(node)));
+  } else {
+    report_expected(node, what, diagnostics);
+  }
   return std::nullopt;
 }
 
@@ -333,6 +370,11 @@ std::optional<std::vector<double>> read_vector(const YamlNode& node, Dimension e
     return std::nullopt;
   } else if (node.is_map()) {
     const int errors_before = diagnostics.error_count();
+    if (node.entries.empty()) {
+      diagnostics.error(
+          node.mark, "empty-value",
+          fmt::format("expected a value for at least one of {}", fmt::join(axes, ", ")));
+    }
     check_keys(node, axes, diagnostics);
     good = diagnostics.error_count() == errors_before;
     for (std::size_t i = 0; i < axes.size(); ++i) {

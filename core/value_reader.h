@@ -39,10 +39,18 @@ bool check_kind(const YamlNode& root, std::string_view kind, int newest, Diagnos
 
 bool expect_map(const YamlNode& node, std::string_view what, Diagnostics& diagnostics);
 bool expect_sequence(const YamlNode& node, std::string_view what, Diagnostics& diagnostics);
-// Reports every key of a map that is not in `known` (id "unknown-key"), with the nearest known one.
+// A scalar that names something: not nothing, no list, no map.
+bool expect_scalar(const YamlNode& node, std::string_view what, Diagnostics& diagnostics);
+// Reports every key of a map that is not in `known` (id "unknown-key"), with the nearest known one,
+// and a `doc` that is no text (check_doc).
 void check_keys(const YamlNode& map, const std::vector<std::string>& known,
                 Diagnostics& diagnostics);
-// The value under a key that must be there (id "missing-key", at the map).
+// A text for people: a scalar, and no number, `true` or `false` without quotes, which are more
+// likely to be the value of another key.
+bool check_doc(const YamlNode& node, Diagnostics& diagnostics);
+// Whether the map has another key that is nearly this one: then an error about that one is enough.
+bool has_nearly(const YamlNode& map, std::string_view key);
+// The value under a key that must be there (id "missing-key", at the map; not if has_nearly()).
 const YamlNode* require_key(const YamlNode& map, std::string_view key, Diagnostics& diagnostics);
 
 // A number in SI of the expected dimension; bare numbers are SI.
@@ -75,6 +83,8 @@ std::optional<std::string> read_name(const YamlNode& node, Diagnostics& diagnost
 // The same test for a map's key, reported at the key.
 bool check_name(const YamlEntry& entry, Diagnostics& diagnostics, std::string_view what = "a name");
 bool is_name(std::string_view text);
+// Names with dots between, each of letters, digits, '_' and '-': `contact.left_foot.touchdown`.
+bool is_dotted_name(std::string_view text);
 // One of a fixed list of words; its index. `expected WHAT: a, b or c, got 'd' (did you mean ...)`.
 std::optional<int> read_choice(const YamlNode& node, const std::vector<std::string>& choices,
                                Diagnostics& diagnostics, std::string_view what = {});

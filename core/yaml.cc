@@ -20,12 +20,13 @@
 #include <utility>
 
 #include "core/text_check.h"
+#include "core/yaml_errors.h"
 
 namespace footfall::core {
 
 namespace {
 
-constexpr std::size_t kMaxFileBytes = 8u << 20;
+constexpr std::size_t kMaxFileBytes = 4u << 20;
 constexpr std::size_t kMaxExpandedBytes = 64u << 20;  // text of all scalars after alias expansion
 constexpr int kMaxNodes = 200'000;
 constexpr int kMaxDepth = 100;
@@ -144,7 +145,11 @@ class TreeBuilder : public YAML::EventHandler {
     throw Stop{};
   }
   void refuse_tag(Mark mark, const std::string& tag) {
-    diagnostics_.error(mark, "tag", fmt::format("a YAML tag '{}' has no meaning here", tag));
+    constexpr std::string_view kYaml = "tag:yaml.org,2002:";
+    const bool own = tag.starts_with(kYaml);
+    diagnostics_.error(mark, "tag",
+                       fmt::format("a YAML tag '{}{}' has no meaning here: leave it out",
+                                   own ? "!!" : "", own ? tag.substr(kYaml.size()) : tag));
   }
 
   void count(Mark mark, int nodes, std::size_t bytes) {
@@ -275,7 +280,7 @@ Mark quote_after(std::string_view text, std::size_t from, int file) {
 YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
   const Mark whole{file, 0, 0};
   if (text.size() > kMaxFileBytes) {
-    diagnostics.error(whole, "too-large", "larger than 8 MB");
+    diagnostics.error(whole, "too-large", "larger than 4 MB");
     return {};
   }
   if (!check_text(text, file, diagnostics)) return {};
@@ -303,11 +308,12 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
       const bool in_quotes = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
       diagnostics.error(
           in_quotes ? quote_after(text, builder.last_end(), file) : builder.innermost(whole),
-          "yaml", in_quotes ? "a quote that is never closed" : "YAML: " + error.msg);
+          in_quotes ? "open-quote" : "yaml",
+          in_quotes ? "a quote that is never closed" : "YAML: " + yaml_error_text(error.msg));
     } else {
       const Mark mark =
           error.mark.is_null() ? whole : Mark{file, error.mark.line + 1, error.mark.column + 1};
-      diagnostics.error(mark, "yaml", "YAML: " + error.msg);
+      diagnostics.error(mark, "yaml", "YAML: " + yaml_error_text(error.msg));
     }
     return {};
   }

@@ -3,7 +3,7 @@
 // Scalars stay text (YAML 1.2 meaning is given by the reader: only `true`/`false` are booleans).
 // Refused here, with a place: duplicate keys, tabs as indentation, `<<`, several documents, invalid
 // UTF-8, nesting deeper than 100, more than 200000 nodes after alias expansion, self-references,
-// files over 8 MB.
+// files over 4 MB.
 #pragma once
 
 #include <string>
@@ -46,10 +46,22 @@ YamlNode load_yaml_file(const std::string& path, Diagnostics& diagnostics);
 // The same from text; `name` stands for the file in messages.
 YamlNode load_yaml_text(std::string_view text, const std::string& name, Diagnostics& diagnostics);
 
+// What a file did to a value of its base.
+struct YamlChange {
+  enum class Kind { replaced, removed, appended };
+  Kind kind = Kind::replaced;
+  std::string path;  // of the value, keys with dots between
+  YamlNode old;      // what the base had, with its place
+  Mark mark;         // of what changed it
+};
+using YamlHistory = std::vector<YamlChange>;  // the innermost base's changes first
+
 // `base: OTHER.yaml` inheritance (relative to the file): maps merge by key in the base's order, new
 // keys last; everything else is replaced whole; `NAME: off` removes; `KEY+:` appends to a list.
-// Cycles and missing bases are errors. Load = load_yaml_file + resolve.
-YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics);
+// Cycles and missing bases are errors. Load = load_yaml_file + resolve. What was
+// replaced on the way is added to `history`, if there is one.
+YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
+                             YamlHistory* history = nullptr);
 // The same for text; `base:` is relative to the folder of `name`.
 YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
                                   Diagnostics& diagnostics);

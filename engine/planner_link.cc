@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "behaviors/planner_calls.h"
+
 namespace footfall::engine {
 
 using behaviors::FootPlan;
@@ -73,7 +75,7 @@ void PlannerLink::deliver(std::int64_t tick, behaviors::Machine& machine) noexce
 
 void PlannerLink::take(std::int64_t tick, behaviors::Machine& machine) noexcept {
   for (const PlanRequest& request : machine.plan_requests()) {
-    const PlanAnswer computed = answer(request);
+    const PlanAnswer computed = answer(request, machine.parameters());
     if (count_ == pending_.size()) continue;  // its deadline will report it
     pending_[(head_ + count_) % pending_.size()] = {tick + latency_ticks_, computed};
     ++count_;
@@ -102,7 +104,8 @@ void PlannerLink::approach_goal(std::size_t planner, std::span<const double> par
   for (std::size_t k = 0; k < 2; ++k) goal[k] += step / distance * (wanted[k] - goal[k]);
 }
 
-PlanAnswer PlannerLink::answer(const PlanRequest& request) const noexcept {
+PlanAnswer PlannerLink::answer(const PlanRequest& request,
+                               std::span<const double> parameters) const noexcept {
   const PlannerInfo& planner = behavior_.planners[static_cast<std::size_t>(request.planner)];
   FootPlannerInput in;
   const auto& com = model_.com();
@@ -115,7 +118,7 @@ PlanAnswer PlannerLink::answer(const PlanRequest& request) const noexcept {
   in.goal = goal_[static_cast<std::size_t>(request.planner)];
   in.switch_in = request.switch_in;
   in.swing_side = contact_side_[static_cast<std::size_t>(request.swing)];
-  const FootPlan plan = plan_foot(planner.spec, in);
+  const FootPlan plan = plan_foot(behaviors::spec_in_force(planner, parameters), in);
   return {request.planner,    request.sequence,   plan.ok,       plan.target,
           plan.predicted_pos, plan.predicted_vel, plan.extension};
 }

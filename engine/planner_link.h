@@ -35,7 +35,8 @@ class PlannerLink {
   };
   void approach_goal(std::size_t planner, std::span<const double> parameters,
                      double period) noexcept;
-  behaviors::PlanAnswer answer(const behaviors::PlanRequest& request) const noexcept;
+  behaviors::PlanAnswer answer(const behaviors::PlanRequest& request,
+                               std::span<const double> parameters) const noexcept;
 
   const behaviors::Behavior& behavior_;
   const model::ControlModel& model_;

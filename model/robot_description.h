@@ -32,8 +32,10 @@ struct ContactDescription {
   std::string name;
   std::string site;  // MJCF site at the centre of the foot's ball
   ContactType type = ContactType::point;
-  std::string group;    // joint group of its leg, may be empty
-  double radius = 0.0;  // m; the contact point is centre - radius * ground normal
+  core::Mark type_mark;   // where the type is written
+  std::string group;      // joint group of its leg, may be empty
+  double radius = 0.0;    // m; the contact point is centre - radius * ground normal
+  double friction = 0.9;  // coefficient that checks count on; the world has its own
 };
 
 // A named place with a frame: a site of the model with its orientation, or a body's own frame.

@@ -68,6 +68,9 @@ constexpr KeySpec kContactRows[] = {
     key("radius", quantity(kLength),
         "of a ball about the site: the contact point is that far along the ground's normal")
         .otherwise("0 m"),
+    key("friction", quantity(kNone),
+        "coefficient that `footfall check` counts on; the world in which it runs has its own")
+        .otherwise("0.9"),
 };
 
 constexpr KeySpec kPointRows[] = {
@@ -116,8 +119,9 @@ constinit const core::KeyTable kContactKeys = {
     .id = "contact", .doc = "A place that can touch the world.", .keys = kContactRows};
 constinit const core::KeyTable kPointKeys = {
     .id = "point",
-    .doc = "A place that tasks can move. Contacts are points too.",
-    .keys = kPointRows};
+    .doc = "A place that tasks can move, with a frame. Contacts are points too.",
+    .keys = kPointRows,
+    .one_of = {"site body"}};
 constinit const core::KeyTable kSensorsKeys = {
     .id = "sensors", .doc = "What is measured.", .keys = kSensorsRows};
 constinit const core::KeyTable kImuKeys = {

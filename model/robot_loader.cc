@@ -148,6 +148,8 @@ class RobotLoader {
     if (!core::expect_map(*sea, "{spring: STIFFNESS, rotor: INERTIA}", diagnostics_)) return;
     core::check_keys(*sea, kSeaKeys, diagnostics_);
     // N m/rad: an angle has no dimension, so a stiffness is a torque here.
+    core::require_key(*sea, "spring", diagnostics_);
+    core::require_key(*sea, "rotor", diagnostics_);
     read_positive(*sea, "spring", core::kTorque, joint.spring);
     read_positive(*sea, "rotor", core::kInertia, joint.rotor);
   }
@@ -175,6 +177,9 @@ class RobotLoader {
     if (!core::expect_map(node, "a map of joint lists by name", diagnostics_)) return;
     for (const YamlEntry& entry : node.entries) {
       core::check_name(entry, diagnostics_, "a group's name");
+      if (entry.value.is_sequence() && entry.value.items.empty()) {
+        diagnostics_.error(entry.value.mark, "empty-value", "a group needs at least one joint");
+      }
       robot_.groups.push_back(
           {entry.key, core::expand_names(entry.value, joint_names_, "joint", diagnostics_)});
     }
@@ -207,11 +212,13 @@ class RobotLoader {
       const auto choice =
           core::read_choice(*type, kContactTypes, diagnostics_, "a type of contact");
       if (choice) contact.type = static_cast<ContactType>(*choice);
+      contact.type_mark = type->mark;
     }
     if (const YamlNode* radius = node.find("radius")) {
       contact.radius =
           core::read_bounded(*radius, core::kLength, 0.0, kInfinity, diagnostics_).value_or(0.0);
     }
+    read_positive(node, "friction", core::kNone, contact.friction);
     const YamlNode* const group = node.find("group");
     if (group == nullptr) return;
     contact.group = core::read_text(*group, diagnostics_, "a group's name").value_or("");
@@ -232,7 +239,7 @@ class RobotLoader {
       core::check_name(entry, diagnostics_, "a point's name");
       if (robot_.find_contact(entry.key) >= 0) {
         diagnostics_.error(
-            entry.key_mark, "duplicate-name",
+            entry.key_mark, "duplicate",
             fmt::format("'{}' is a contact already, and a contact is a point", entry.key));
       }
       PointDescription point{entry.key, {}, {}};
@@ -312,7 +319,7 @@ class RobotLoader {
     if (std::find(known.begin(), known.end(), *name) == known.end()) {
       report_unknown(node, "contact, group, point or joint", known);
     } else if (std::find(used.begin(), used.end(), *name) != used.end()) {
-      diagnostics_.error(node.mark, "twice", fmt::format("'{}' changes places twice", *name));
+      diagnostics_.error(node.mark, "duplicate", fmt::format("'{}' changes places twice", *name));
     }
     used.push_back(*name);
     return *name;
@@ -343,7 +350,7 @@ class RobotLoader {
       const auto choice = core::read_choice(entry.value, kReactions, diagnostics_, "a reaction");
       if (found == names.end()) {
         diagnostics_.error(
-            entry.key_mark, "unknown-name",
+            entry.key_mark, "unknown-fault",
             fmt::format("no fault '{}'{}", entry.key, hint_or_list(entry.key, names)));
       } else if (choice) {
         robot_.reactions[static_cast<std::size_t>(found - names.begin())] =

@@ -44,9 +44,10 @@ inline std::unique_ptr<behaviors::Behavior> load(
 inline std::string chart(const std::string& machine) { return "behavior: 1\nmachine:\n" + machine; }
 
 // Its trace: one line of active atomic states for the start and for each event.
-inline std::vector<std::string> trace_of(const std::string& text, const std::string& events) {
+inline std::vector<std::string> trace_of(const behaviors::Behavior& behavior,
+                                         const std::vector<behaviors::TraceStep>& steps) {
   std::ostringstream out;
-  behaviors::trace(*load(text), behaviors::trace_events(events), out);
+  behaviors::trace(behavior, steps, out);
   std::vector<std::string> lines;
   std::istringstream in(out.str());
   for (std::string line; std::getline(in, line);) {
@@ -58,6 +59,10 @@ inline std::vector<std::string> trace_of(const std::string& text, const std::str
     lines.push_back(names);
   }
   return lines;
+}
+
+inline std::vector<std::string> trace_of(const std::string& text, const std::string& events) {
+  return trace_of(*load(text), behaviors::trace_events(events));
 }
 
 using Lines = std::vector<std::string>;

@@ -165,9 +165,17 @@ TEST_F(Expression, ComparisonsDoNotChain) {
 TEST_F(Expression, SyntaxErrorsSayWhatWasExpected) {
   EXPECT_EQ(error_of("(1 + 2"), "6: expected ')', got end of expression");
   EXPECT_EQ(error_of("1 + "), "4: expected a value, got end of expression");
-  EXPECT_EQ(error_of("1 2"), "2: unexpected a number");
+  EXPECT_EQ(error_of("1 2"), "2: expected an operator, got a number");
   EXPECT_EQ(error_of("1 # 2"), "2: unexpected '#' in an expression");
   EXPECT_EQ(error_of("clamp(1, 2)"), "0: clamp() expects 3 arguments");
+}
+TEST_F(Expression, SignsOfOtherLanguagesAreNamedWithTheirWordHere) {
+  EXPECT_EQ(error_of("contact.left = 1"), "13: unexpected '=' in an expression: equal is '=='");
+  EXPECT_EQ(error_of("1 && 2"), "2: unexpected '&' in an expression: write 'and'");
+  EXPECT_EQ(error_of("!contact.left"), "0: unexpected '!' in an expression: write 'not'");
+  EXPECT_EQ(error_of("1/s"),
+            "2: unknown signal 's': a unit stands right behind its number, as in '2 1/s'");
+  EXPECT_EQ(error_of("max(1)"), "0: max() expects 2 arguments or more");
 }
 TEST_F(Expression, AVectorParameterNeedsAComponent) {
   EXPECT_EQ(error_of("$goal + 1"), "0: parameter 'goal' has 2 values: write $goal.x");
@@ -184,6 +192,47 @@ TEST_F(Expression, ALongFlatSumNeedsTwoPlacesOnly) {
   std::string sum = "1";
   for (int k = 0; k < 500; ++k) sum += " + 1";
   EXPECT_EQ(value(sum), 501.0);
+}
+TEST_F(Expression, AProductCountsOnceInTheSumThatFollows) {
+  EXPECT_EQ(value("($scale + 1)*2 + 5 + 7"), 20.0);
+  EXPECT_EQ(value("100 - ($scale + 1)*2 - 5"), 87.0);
+  EXPECT_EQ(value("($scale + 1)*2 - $scale - 1"), 4.0);
+  EXPECT_EQ(value("($scale + 1)*($scale + 2) - ($scale - 1)*($scale - 2) + ($scale + 3)*2"), 30.0);
+  EXPECT_EQ(value("10 + (contact.left ? $scale + 4 : ($scale + 1)*2)"), 17.0);
+}
+TEST_F(Expression, AnExpressionOfThousandsOfTermsIsRefused) {
+  std::string sum = "t";
+  for (int k = 0; k < 3000; ++k) sum += " + t";
+  EXPECT_EQ(error_of(sum), "0: expression of more than 4096 values and operations");
+}
+TEST_F(Expression, AQuantityIsTheSameNumberInsideAndOutsideOfExpressions) {
+  for (const char* text : {"70 %", "3 ms", "145 ms", "6 cm", "8.3 deg", "1.1 mm", "0.7 1/s^2"}) {
+    EXPECT_EQ(value(text), core::parse_quantity(text)->value) << text;
+  }
+}
+TEST_F(Expression, UnitsEndWhereTheNextWordOrOperatorBegins) {
+  EXPECT_EQ(value("3 m*2", core::kLength), 6.0);
+  EXPECT_EQ(value("t < 2 s and 1 > 0"), 1.0);
+  EXPECT_EQ(value("2 min", core::kTime), 120.0);
+  EXPECT_EQ(value("5 N m", core::kTorque), 5.0);
+  EXPECT_EQ(value("2 m*1 s", core::kLength * core::kTime), 2.0);
+}
+TEST_F(Expression, ASingleChoiceOfConditionsKeepsItsOtherBranchUnread) {
+  EXPECT_EQ(value("contact.left ? (com.pos.z > 0.8 ? 1 : 2) + 0 : (1/0)*t/1 s"), 1.0);
+  EXPECT_EQ(value("1 + (not contact.left ? 7 : (t + 70 ms)*10/1 s)"), 2.0);
+  EXPECT_FALSE(std::isfinite(value("1/0 > 1 ? com.pos.z + 1 : com.pos.z + 2")));
+}
+TEST_F(Expression, UnitsToUnheardOfPowersAreRefused) {
+  EXPECT_EQ(error_of("((2 m)^9)^9"), "10: no quantity has a unit to the power of more than 12");
+}
+TEST_F(Expression, ReductionsOverARunAreThereOnlyWhereTheyHaveAMeaning) {
+  EXPECT_EQ(error_of("rms(com.pos.z)"), "0: unknown function 'rms'");
+  scope_.find_reduction = [&](std::string_view name, int signal) {
+    return name == "rms" && signal == height_ ? contact_ : -1;
+  };
+  EXPECT_EQ(value("rms(com.pos.z) < 2 m"), 1.0);
+  EXPECT_EQ(error_of("rms(com.pos.z) < 2 s"), "17: cannot compare a length and a time");
+  EXPECT_EQ(value("max(com.pos.z, 2 m)", core::kLength), 2.0);
 }
 TEST_F(Expression, OnlyExpressionsWithoutNamesAreConstant) {
   ExpressionError error;

@@ -58,6 +58,17 @@ TEST(Language, EveryTaskTypeOfTheTablesIsOneOfTheLoader) {
     EXPECT_EQ(core::belongs_to(*core::find_key(kTaskKeys, "axes"), type.word), !info->joints);
   }
 }
+// A lone signal is told from a word by its dot; editors know those without one by name
+// (apps/scalar_patterns.cc).
+TEST(Language, SignalsHaveADotInTheirNameButForAFew) {
+  core::SignalTable table;
+  register_signals({}, {{"height", {"z"}, false}}, {"tension"}, {"foot"}, table);
+  const std::set<std::string> known = {"time", "steps", "state", "faults"};
+  for (const core::SignalInfo& info : table.infos()) {
+    const bool dotted = info.name.find('.') != std::string::npos;
+    EXPECT_TRUE(dotted || known.contains(info.name)) << info.name;
+  }
+}
 
 }  // namespace
 }  // namespace footfall::behaviors

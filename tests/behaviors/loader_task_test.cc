@@ -173,7 +173,7 @@ TEST(LoaderTask, APairHasOneForce) {
                      "    b: {between: [left_foot, right_foot], reference: 1 N}\n"
                      "    c: {between: [left_foot, left_foot], reference: 1 N}\n"),
             "b.yaml:7:18: error: another internal force acts between these two contacts already\n"
-            "b.yaml:8:30: error: a force between a contact and itself\n");
+            "b.yaml:8:30: error: an internal force acts between two feet, not one\n");
 }
 TEST(LoaderTask, RegionsThatContradictEachOtherAreErrors) {
   const std::string text =

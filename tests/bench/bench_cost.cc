@@ -3,30 +3,27 @@
 // Appendix A taken literally (naive); its share of the mass matrix factorisation is counted in.
 // Needs about 15 s. `--profile dual|single`: 20000 ticks and nothing else, for callgrind.
 #include <mujoco/mujoco.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/bench/algebra_cases.h"
+#include "tests/bench/timing.h"
 #include "tests/support/allocation_guard.h"
-#include "tests/support/hume_problem.h"
-#include "tests/support/naive_wbosc.h"
 #include "tests/support/rig.h"
 
 namespace footfall::tests {
 namespace {
 
 constexpr int kRounds = 11;
-constexpr int kCalls = 3000;       // of a round
+constexpr int kCalls = 3000;       // of the allocation count
 constexpr int kStates = 64;        // recorded, gone through in turn
-constexpr int kProblems = 16;      // of the algebra alone
 constexpr int kPacedTicks = 3000;  // of each stance
 constexpr long kPeriodNs = 666'667;
 
@@ -53,12 +50,6 @@ machine:
     stance: {stack: STANCE}
     limp: {contacts: [], tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}}
 )";
-
-double now_us(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 
 // Sensors of the simulated robot standing on two feet, and the same with the left foot lifted.
 struct Recording {
@@ -126,42 +117,6 @@ struct Stance {
   }
 };
 
-// The algebra alone, on states of its own.
-struct Algebra {
-  struct Case {
-    std::unique_ptr<model::ControlModel> model;
-    std::unique_ptr<tasks::Wbosc> solver;
-    std::unique_ptr<ProblemBuilder> builder;
-    NaiveProblem naive;
-  };
-  std::vector<Case> cases;
-  double torque_difference = 0.0;
-
-  explicit Algebra(bool dual) {
-    const model::RobotDescription robot = load_hume();
-    Random random(7);
-    for (int i = 0; i < kProblems; ++i) {
-      Case c;
-      c.model = std::make_unique<model::ControlModel>(robot);
-      c.model->update(random_state(robot, random));
-      c.solver = std::make_unique<tasks::Wbosc>(hume_sizes());
-      c.builder = std::make_unique<ProblemBuilder>(*c.model, c.solver->problem());
-      if (dual) {
-        fill_dual(*c.builder, *c.model, random, 50.0);
-      } else {
-        fill_single(*c.builder, *c.model, random);
-      }
-      c.naive = dense_problem(*c.model, c.solver->problem());
-      c.solver->solve();
-      const Eigen::VectorXd expected = naive_wbosc(c.naive).tau;
-      const Eigen::Map<const Eigen::VectorXd> tau(c.solver->solution().tau.data(), 6);
-      torque_difference = std::max(torque_difference, (tau - expected).cwiseAbs().maxCoeff() /
-                                                          expected.cwiseAbs().maxCoeff());
-      cases.push_back(std::move(c));
-    }
-  }
-};
-
 // MuJoCo with its own copy of the physics scene.
 class Physics {
  public:
@@ -196,24 +151,6 @@ class Physics {
   long contacts_ = 0, steps_ = 0;
 };
 
-struct Part {
-  std::function<void(int)> call;
-  int calls = kCalls;
-  std::vector<double> rounds;  // us a call
-
-  void round() {
-    const double start = now_us(CLOCK_MONOTONIC);
-    for (int i = 0; i < calls; ++i) call(i);
-    rounds.push_back((now_us(CLOCK_MONOTONIC) - start) / calls);
-  }
-  double lowest() const { return *std::min_element(rounds.begin(), rounds.end()); }
-  double median() const {
-    std::vector<double> sorted = rounds;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[sorted.size() / 2];
-  }
-};
-
 // Thread CPU time of ticks at their real pace, sleeping in between.
 std::vector<double> paced(engine::ControlLoop& loop) {
   std::vector<double> us;
@@ -237,8 +174,6 @@ double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
-
-double rounded(double value) { return std::round(1000.0 * value) / 1000.0; }
 
 int profile(const std::string& name) {
   const Recording recording = record();

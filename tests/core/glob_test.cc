@@ -38,10 +38,12 @@ TEST(GlobTest, TwoGlobsOnOneNameAndGlobsOnNoneAreErrors) {
   const YamlNode map = load_yaml_text("\"*knee\": 1\n\"left_*\": 2\n\"*ankle\": 3\nleft_kne: 4\n",
                                       "f.yaml", diagnostics);
   match_names(map, kJoints, "joint", diagnostics);
-  EXPECT_EQ(diagnostics.to_string(),
-            "f.yaml:2:1: error: 'left_*' and '*knee' (line 1) both match joint 'left_knee'\n"
-            "f.yaml:3:1: error: '*ankle' matches no joint\n"
-            "f.yaml:4:1: error: no joint 'left_kne' (did you mean 'left_knee'?)\n");
+  EXPECT_EQ(
+      diagnostics.to_string(),
+      "f.yaml:2:1: error: 'left_*' and '*knee' (line 1) both match joint 'left_knee'\n"
+      "f.yaml:3:1: error: '*ankle' matches no joint: there are right_hip, right_knee, left_hip, "
+      "left_knee\n"
+      "f.yaml:4:1: error: no joint 'left_kne' (did you mean 'left_knee'?)\n");
 }
 
 TEST(GlobTest, AListOfNamesKeepsItsOrder) {

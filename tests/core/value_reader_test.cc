@@ -122,7 +122,8 @@ TEST(ValueReaderTest, NamesAreIdentifiersAndNotYamlsOldBooleans) {
   EXPECT_FALSE(check_name(document.root().entries[2], document.diagnostics(), "a state's name"));
   EXPECT_EQ(document.problems(),
             "f.yaml:1:4: error: expected a name ('off' cannot be a name), got 'off'\n"
-            "f.yaml:2:4: error: expected a name (letters, digits and '_'), got 'right foot'\n"
+            "f.yaml:2:4: error: expected a name (letters, digits and '_', no digit first), got "
+            "'right foot'\n"
             "f.yaml:3:1: error: expected a state's name ('no' cannot be a name), got 'no'\n");
 }
 

@@ -166,7 +166,8 @@ TEST_F(RobotDescriptionTest, DimensionsAreChecked) {
 
 TEST_F(RobotDescriptionTest, PerJointMapsTakeGlobs) {
   EXPECT_EQ(problems(R"("*hip": -25 deg)", R"("*ankle": 0)"),
-            "7:11: error: '*ankle' matches no joint\n");
+            "7:11: error: '*ankle' matches no joint: there are right_hip, right_knee, left_hip, "
+            "left_knee\n");
   EXPECT_EQ(problems(R"("*hip": -25 deg)", R"("right*": 0)"),
             "7:43: error: '*knee' and 'right*' (line 7) both match joint 'right_knee'\n");
   EXPECT_EQ(problems("left_knee: 50 deg", "left_kne: 50 deg"),
@@ -188,7 +189,7 @@ TEST_F(RobotDescriptionTest, ReferencesBetweenItsPartsAreChecked) {
   EXPECT_EQ(problems("type: point", "type: blob"),
             "15:45: error: expected a type of contact: point, surface or fixed, got 'blob'\n");
   EXPECT_EQ(problems(R"(switches: ["*_foot"])", "switches: [right_hand]"),
-            "19:79: error: no contact 'right_hand'\n");
+            "19:79: error: no contact 'right_hand': there are right_foot, left_foot\n");
 }
 
 TEST_F(RobotDescriptionTest, FaultsAndReactionsAreNamesOfALIst) {

@@ -1,0 +1,4 @@
+-- For behavior.yaml: a function to call.
+function greet()
+  footfall.log("goes")
+end

@@ -1,0 +1,3 @@
+function wave()
+  footfall.log("hello"
+end
