@@ -76,8 +76,9 @@ struct LoadContext {
   std::vector<std::string> script_patterns;               // of footfall.on
   std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
-  std::map<std::pair<const void*, int>, int> reference_sources;  // ReferenceSpec::source
-  std::vector<std::string_view> task_type_of_name;               // by Behavior::task_names
+  std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and what to say of them
+  std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source
+  std::vector<std::string_view> task_type_of_name;                   // by Behavior::task_names
   int expanded_states = 0;
   bool states_missing = false;  // after an error in a template: a name unknown may be one of them
 

@@ -51,6 +51,7 @@ class ControlLoader {
       }
       behavior_.controls[static_cast<std::size_t>(id)] = std::move(control);
     }
+    warn_incomplete_gains(context_);
     make_unused_gains(context_);
   }
 

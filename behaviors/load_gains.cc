@@ -243,6 +243,12 @@ void use_gain(LoadContext& context, const GainSource& source, std::size_t gain,
   }
 }
 
+void warn_incomplete_gains(LoadContext& context) {
+  for (const auto& [mark, text] : context.incomplete_gains) {
+    context.absence(mark, "incomplete-gains", text);
+  }
+}
+
 void make_unused_gains(LoadContext& context) {
   for (auto& [name, entry] : context.gain_entries) {
     if (entry.made) continue;

@@ -29,6 +29,8 @@ GainEntry* inline_gains(LoadContext& context, const std::string& owner, const st
 // known; or, where it is an expression, that.
 void use_gain(LoadContext& context, const GainSource& source, std::size_t gain,
               const AxesScope& axes, std::vector<AxisSpec>& out);
+// Warns of what tasks miss in their gains, if all else is well.
+void warn_incomplete_gains(LoadContext& context);
 // Checks what no task uses.
 void make_unused_gains(LoadContext& context);
 

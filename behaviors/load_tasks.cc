@@ -94,7 +94,7 @@ void report_no_gains(LoadContext& context, const DraftItem& item, const Draft& d
 }
 
 // kp without kd, and ki without kp, in all layers together.
-void warn_incomplete_gains(LoadContext& context, const std::vector<GainSource>& sources) {
+void note_incomplete_gains(LoadContext& context, const std::vector<GainSource>& sources) {
   const auto node_of = [&](const char* gain) -> const core::YamlNode* {
     for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
       if (source->entry->node->find(gain) != nullptr) return source->entry->node;
@@ -103,11 +103,11 @@ void warn_incomplete_gains(LoadContext& context, const std::vector<GainSource>& 
   };
   const core::YamlNode* p = node_of("kp");
   if (const core::YamlNode* i = node_of("ki"); i != nullptr && p == nullptr) {
-    context.absence(i->mark, "incomplete-gains",
-                    "ki without kp cannot be stable: is a kp missing?");
+    context.incomplete_gains.emplace_back(i->mark,
+                                          "ki without kp cannot be stable: is a kp missing?");
   } else if (p != nullptr && node_of("kd") == nullptr) {
-    context.absence(p->mark, "incomplete-gains",
-                    "kp without kd never comes to rest: add a kd (`kd: 0` if it is meant)");
+    context.incomplete_gains.emplace_back(
+        p->mark, "kp without kd never comes to rest: add a kd (`kd: 0` if it is meant)");
   }
 }
 
@@ -120,7 +120,7 @@ void compile_gains(LoadContext& context, const DraftItem& item, const Draft& dra
     if (context.diagnostics.error_count() == before) report_no_gains(context, item, draft);
     return;
   }
-  warn_incomplete_gains(context, sources);
+  note_incomplete_gains(context, sources);
   for (std::size_t k = 0; k < kGainNames.size(); ++k) {
     const auto source = std::find_if(sources.rbegin(), sources.rend(), [&](const auto& s) {
       return s.entry->node->find(kGainNames[k]) != nullptr;

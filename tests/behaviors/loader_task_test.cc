@@ -19,14 +19,14 @@ std::string moving(const std::string& reference) {
 
 TEST(LoaderTask, EveryTaskTypeLoads) {
   EXPECT_EQ(problems(with(R"(
-    a: {type: frame_orientation, point: left_foot, reference: 0, gains: {kp: 1}}
-    b: {type: frame_pose, point: torso_top, axes: [z, pitch], reference: {z: 1 m, pitch: 3 deg}, gains: {kp: 1}}
+    a: {type: frame_orientation, point: left_foot, reference: 0, gains: {kp: 1, kd: 1}}
+    b: {type: frame_pose, point: torso_top, axes: [z, pitch], reference: {z: 1 m, pitch: 3 deg}, gains: {kp: 1, kd: 1}}
     c: {type: centroidal_angular_momentum, axes: [y], reference: 0.1 kg m^2/s, gains: {kp: 1, kd: 2}}
-    d: {type: com_position, frame: stance, axes: [x], reference: 1 cm, gains: {kp: 1}}
-    e: {type: body_orientation, frame: world, reference: 0, gains: {kp: 1}}
-    f: {type: joint_posture, joints: ["*_knee"], reference: 0, gains: {kp: 1}}
+    d: {type: com_position, frame: stance, axes: [x], reference: 1 cm, gains: {kp: 1, kd: 1}}
+    e: {type: body_orientation, frame: world, reference: 0, gains: {kp: 1, kd: 1}}
+    f: {type: joint_posture, joints: ["*_knee"], reference: 0, gains: {kp: 1, kd: 1}}
     g: {type: joint_damping, gains: {kd: 1}}
-    h: {type: point_position, point: torso_top, reference: 0, gains: {kp: 1}})")),
+    h: {type: point_position, point: torso_top, reference: 0, gains: {kp: 1, kd: 1}})")),
             "");
 }
 TEST(LoaderTask, APoseHasLengthsAndAngles) {
