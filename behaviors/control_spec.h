@@ -45,6 +45,7 @@ struct ReferenceSpec {
   // Its words in the file and their owner: a task whose other keys change keeps its trajectory.
   int source = -1;
   int over = -1;    // expression of a time; ellipse, surface: of the centre, of the height above
+  core::Mark over_mark;
   int period = -1;  // ellipse: expression of a time
   int ramp = -1;    // ellipse: expression of a time, -1: one period
   double direction = 1.0;  // ellipse: 1 from its first axis towards the others, -1 back
@@ -100,6 +101,7 @@ struct TorqueLoopTable {
 
 // One `invoke` of a planner.
 struct InvokeInfo {
+  core::Mark at_mark;  // of when it is asked
   int state = 0;
   int planner = 0;
   int at = -1;                  // expression of a time in the state; -1: at_fraction of `after`

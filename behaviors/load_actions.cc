@@ -35,7 +35,7 @@ void load_raise(LoadContext& context, const core::YamlNode& node) {
     context.error(node.mark, "built-in-event",
                   fmt::format("'{}' is raised by the engine only", *name));
   }
-  context.raised_events.push_back(*name);
+  context.raised_events.push_back({*name, node.mark});
   add(context, {ActionKind::raise, event, -1, 0.0, 0.0});
 }
 

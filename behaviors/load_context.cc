@@ -143,6 +143,7 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
     int best = -1, other = -1;
     for (int s = std::max(scope, 1); s < states[static_cast<std::size_t>(scope)].end; ++s) {
       const StateInfo& info = states[static_cast<std::size_t>(s)];
+      if (name.empty() || info.path.back() != name.back()) continue;  // most of thousands go here
       const bool fits =
           info.path == name || (info.path.ends_with(name) && info.path.size() > name.size() &&
                                 info.path[info.path.size() - name.size() - 1] == '.');
@@ -163,7 +164,7 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
   std::vector<std::string> names;
   // Guessing compares with every state: not for thousands of names that fit nothing.
   constexpr int kGuesses = 100;
-  if (diagnostics.error_count() < kGuesses) {
+  if (++state_guesses <= kGuesses) {
     for (const StateInfo& info : states) names.push_back(info.name);
   }
   why = fmt::format("unknown state '{}'{}", name, core::did_you_mean(name, names));

@@ -56,6 +56,12 @@ struct ValueScope {
   const std::vector<core::Dimension>* entry_dimensions = nullptr;
 };
 
+// An event that an action raises.
+struct RaisedEvent {
+  std::string name;
+  core::Mark mark;
+};
+
 struct LoadContext {
   LoadContext(Behavior& out, const LoadOptions& given, core::Diagnostics& problems)
       : behavior(out), options(given), diagnostics(problems) {}
@@ -70,17 +76,22 @@ struct LoadContext {
   std::array<std::optional<std::array<double, 2>>, 3> gain_ranges;  // kp, ki, kd
   std::deque<core::YamlNode> substituted;  // stacks with arguments put in; addresses stay
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
-  std::vector<std::string> used_templates, used_stacks;
-  std::vector<std::string> raised_events, declared_events;
-  std::vector<std::string> script_functions;              // that `call:` may name
-  std::vector<std::string> script_patterns;               // of footfall.on
+  std::vector<std::string> used_templates, used_stacks, used_torque_loops;
+  std::vector<std::pair<std::string, Arguments>> mirrored;  // templates, as written
+  std::vector<RaisedEvent> raised_events;
+  std::vector<std::string> declared_events;
+  std::vector<const core::YamlNode*> transition_nodes;  // by transition, nullptr: a state's own
+  std::vector<std::vector<int>> control_states;  // by control, the states that it was merged from
+  std::vector<std::string> script_functions;     // that `call:` may name
+  std::vector<std::string> script_patterns;      // of footfall.on
   std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and what to say of them
   std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source
   std::vector<std::string_view> task_type_of_name;                   // by Behavior::task_names
   int expanded_states = 0;
-  bool states_missing = false;  // after an error in a template: a name unknown may be one of them
+  mutable int state_guesses = 0;  // names of states that were looked for in vain
+  bool states_missing = false;    // after an error in a template: a name unknown may be one of them
 
   void error(core::Mark mark, std::string_view id, std::string text);
   void warning(core::Mark mark, std::string_view id, std::string text);
@@ -139,6 +150,7 @@ void load_invokes(LoadContext& context);         // load_invokes.cc
 void load_control(LoadContext& context);         // load_control.cc
 void finish_events(LoadContext& context);        // load_events.cc
 void warn_absences(LoadContext& context);        // load_absences.cc
+void check_structure(LoadContext& context);      // check_structure.cc
 
 // Events of a transition's `on`, into Chart::patterns (load_events.cc).
 void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "behaviors/language.h"
 #include "behaviors/load_gains.h"
@@ -43,6 +44,7 @@ class ControlLoader {
       active.clear();
       collect(0, id, active);
       std::sort(active.begin(), active.end());
+      context_.control_states.push_back(active);
       const Draft draft = build_draft(context_, active, nullptr, -1);
       ControlSpec control = compile(draft);
       if (draft.transition != nullptr) {
@@ -223,7 +225,7 @@ class ControlLoader {
     const auto& robot = behavior_.robot;
     if (draft.torque_loops.empty()) return;
     control.torque_loops.assign(robot.joints.size(), -1);
-    std::vector<const DraftItem*> speaker(robot.joints.size(), nullptr);
+    std::vector<const DraftItem*> by_joint(robot.joints.size(), nullptr);
     for (const DraftItem& item : draft.torque_loops) {
       const core::YamlNode& name = *item.keys.front().node;
       const int table = core::is_off(name) ? -1 : find_torque_loop(name);
@@ -239,23 +241,28 @@ class ControlLoader {
         continue;
       }
       for (const int joint : robot.groups[static_cast<std::size_t>(group)].joints) {
-        const auto j = static_cast<std::size_t>(joint);
-        control.torque_loops[j] = table;
-        if (speaker[j] != nullptr && speaker[j]->layer == item.layer) {
-          context_.error(item.mark, "duplicate",
-                         fmt::format("'{}' and '{}' both name joint '{}'", speaker[j]->name,
-                                     item.name, robot.joints[j].name));
-          break;
-        }
-        speaker[j] = &item;
+        control.torque_loops[static_cast<std::size_t>(joint)] = table;
+        const DraftItem* other = std::exchange(by_joint[static_cast<std::size_t>(joint)], &item);
+        if (other == nullptr || other->name == item.name || nested(*other, item)) continue;
+        context_.error(item.mark, "parallel-conflict",
+                       fmt::format("'{}' and '{}' both give joint '{}' a torque_loop", other->name,
+                                   item.name, robot.joints[static_cast<std::size_t>(joint)].name));
+        break;
       }
     }
+  }
+
+  // Of states of which one is inside the other, or of a stack and a state over it.
+  bool nested(const DraftItem& a, const DraftItem& b) const {
+    if (a.owner < 0 || b.owner < 0) return a.owner != b.owner;
+    return behavior_.is_descendant(a.owner, b.owner) || behavior_.is_descendant(b.owner, a.owner);
   }
 
   int find_torque_loop(const core::YamlNode& name) {
     if (!core::expect_scalar(name, "the name of a torque_loop table", context_.diagnostics)) {
       return -1;
     }
+    context_.used_torque_loops.push_back(name.scalar);
     std::vector<std::string> names;
     for (const TorqueLoopTable& table : behavior_.torque_loops) {
       if (table.name == name.scalar) return static_cast<int>(names.size());

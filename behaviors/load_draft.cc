@@ -27,6 +27,11 @@ void report_clash(LoadContext& context, core::Mark mark, const std::string& what
                             states[static_cast<std::size_t>(b)].path));
 }
 
+bool same_names(const core::YamlNode& a, const core::YamlNode& b) {
+  return std::is_permutation(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(),
+                             [](const auto& x, const auto& y) { return x.scalar == y.scalar; });
+}
+
 // Whose word is being laid: a state's, or a stack's (`stack` is not empty) that the state names.
 struct Layer {
   int owner = 0;
@@ -43,7 +48,6 @@ std::string layer_name(const LoadContext& context, const Layer& layer) {
 void lay_item(const LoadContext& context, DraftItem& item, const core::YamlNode& map,
               const Layer& layer) {
   item.owner = layer.owner;
-  item.layer = layer.index;
   for (const core::YamlEntry& key : map.entries) {
     const auto same = [&](const DraftKey& other) { return other.key == key.key; };
     auto found = std::find_if(item.keys.begin(), item.keys.end(), same);
@@ -91,33 +95,30 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
     }
     if (item == items.end()) {
       core::check_name(entry, context.diagnostics, fmt::format("the name of a {}", what));
-      items.push_back({entry.key, entry.key_mark, owner, {}, {}, layer.index});
+      items.push_back({entry.key, entry.key_mark, owner, {}, {}});
       item = items.end() - 1;
     }
     lay_item(context, *item, entry.value, layer);
   }
 }
 
-// Tables by foot or group; `off` leaves the group's actuators as they are.
-void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& map,
-                      const Layer& layer) {
-  if (!core::expect_map(map, "tables by foot or group", context.diagnostics)) return;
+// Tables by foot or group; `off` leaves the group's actuators as they are. Items of a stack have no
+// owner: what states say goes over them.
+void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& map, int owner) {
   for (const core::YamlEntry& entry : map.entries) {
     auto item = std::find_if(draft.torque_loops.begin(), draft.torque_loops.end(),
                              [&](const DraftItem& other) { return other.name == entry.key; });
-    if (item != draft.torque_loops.end()) {
-      if (layer.stack.empty() && parallel(context, item->owner, layer.owner)) {
-        report_clash(context, entry.key_mark, fmt::format("the torque loop of '{}'", entry.key),
-                     item->owner, layer.owner);
-      }
-      draft.torque_loops.erase(item);
+    if (item != draft.torque_loops.end() && item->owner >= 0 &&
+        parallel(context, item->owner, owner)) {
+      report_clash(context, entry.key_mark, fmt::format("torque_loop '{}'", entry.key), item->owner,
+                   owner);
     }
-    draft.torque_loops.push_back({entry.key,
-                                  entry.key_mark,
-                                  layer.owner,
-                                  {{"table", &entry.value, layer.owner, entry.key_mark}},
-                                  {},
-                                  layer.index});
+    if (item == draft.torque_loops.end()) {
+      draft.torque_loops.push_back({entry.key, entry.key_mark, owner, {}, {}});
+      item = draft.torque_loops.end() - 1;
+    }
+    item->owner = owner;
+    item->keys = {{"table", &entry.value, owner, entry.key_mark}};
   }
 }
 
@@ -146,21 +147,13 @@ void lay_gains(LoadContext& context, Draft& draft, const core::YamlNode& gains,
       {&gains, layer.owner, layer.index, false, !layer.stack.empty(), layer_name(context, layer)});
 }
 
-std::vector<std::string> sorted_names(const core::YamlNode& list) {
-  std::vector<std::string> names;
-  for (const core::YamlNode& item : list.items) names.push_back(item.scalar);
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 // What a stack and a state have in common.
 void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, int owner,
               const std::string& stack) {
   const Layer layer = {owner, stack, draft.layers++};
   if (const auto* contacts = keys.find("contacts")) {
-    if (draft.contacts != nullptr && stack.empty() &&
-        parallel(context, draft.contacts_owner, owner) &&
-        sorted_names(*draft.contacts) != sorted_names(*contacts)) {
+    if (draft.contacts != nullptr && stack.empty() && !same_names(*draft.contacts, *contacts) &&
+        parallel(context, draft.contacts_owner, owner)) {
       report_clash(context, contacts->mark, "`contacts`", draft.contacts_owner, owner);
     }
     draft.contacts = contacts;
@@ -174,7 +167,9 @@ void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, in
   }
   if (const auto* gains = keys.find("gains")) lay_gains(context, draft, *gains, layer);
   if (const auto* loops = keys.find("torque_loop")) {
-    lay_torque_loops(context, draft, *loops, layer);
+    if (core::expect_map(*loops, "tables by foot or group", context.diagnostics)) {
+      lay_torque_loops(context, draft, *loops, owner);
+    }
   }
 }
 
@@ -242,7 +237,7 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
       draft.mark = stack->mark;
       for (DraftItem& item : draft.tasks) item.owner = 0;  // no state's word yet
       for (DraftItem& item : draft.internals) item.owner = 0;
-      for (DraftItem& item : draft.torque_loops) item.owner = 0;
+      for (DraftItem& item : draft.torque_loops) item.owner = -1;
       draft.contacts_owner = 0;
     }
   }

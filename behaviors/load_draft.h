@@ -35,7 +35,6 @@ struct DraftItem {
   int owner = 0;                  // state whose word is the last
   std::vector<DraftKey> keys;     // of the map, in order
   std::vector<DraftGains> gains;  // written in it, outer first
-  int layer = 0;                  // that spoke last
   const DraftKey* find(std::string_view key) const;
 };
 

@@ -114,11 +114,6 @@ void load_patterns(LoadContext& context, int state, const core::YamlNode& on, in
 
 void finish_events(LoadContext& context) {
   Behavior& behavior = context.behavior;
-  const auto& raised = context.raised_events;
-  const auto& declared = context.declared_events;
-  const auto contains = [](const auto& list, const std::string& name) {
-    return std::find(list.begin(), list.end(), name) != list.end();
-  };
   for (std::size_t p = behavior.changed_events.size(); p < behavior.parameters.size(); ++p) {
     behavior.changed_events.push_back(  // gains: known only now
         context.add_event("parameter.changed." + behavior.parameters[p].name));
@@ -132,20 +127,6 @@ void finish_events(LoadContext& context) {
     }
   }
   for (const EventPattern& pattern : behavior.patterns) {
-    const bool exact = !pattern.text.ends_with("*");
-    const bool changed = pattern.text.starts_with(kChanged) &&
-                         behavior.find_parameter(pattern.text.substr(kChanged.size())) >= 0;
-    const bool external = changed || context.built_in_events > behavior.find_event(pattern.text) ||
-                          contains(declared, pattern.text) || contains(raised, pattern.text);
-    if (exact && !external) {
-      std::vector<std::string> known = declared;
-      known.insert(known.end(), raised.begin(), raised.end());
-      known.insert(known.end(), behavior.events.begin(),
-                   behavior.events.begin() + context.built_in_events);
-      context.absence(pattern.mark, "never-raised",
-                      fmt::format("nothing raises '{}', and `events` does not list it{}",
-                                  pattern.text, core::did_you_mean(pattern.text, known)));
-    }
     for (const std::string& event : behavior.events) {
       if (!event.starts_with(kChanged) || !Chart::event_matches(pattern.text, event)) continue;
       behavior.watches_parameters = true;

@@ -1,6 +1,7 @@
 // `invoke:` of a state: which planner is asked when, and what a late answer is replaced by.
 #include <fmt/format.h>
 
+#include "behaviors/check_structure.h"
 #include "behaviors/language.h"
 #include "behaviors/load_context.h"
 
@@ -18,6 +19,20 @@ int find_planner(LoadContext& context, const core::YamlNode& node) {
                 fmt::format("unknown planner '{}'{}", node.scalar,
                             core::did_you_mean_or_list(node.scalar, names)));
   return -1;
+}
+
+// Two states that are active at once may not ask the same planner: each would get the other's plan.
+void check_asked_once(LoadContext& context, const core::YamlNode& node, const InvokeInfo& invoke) {
+  const auto& states = context.behavior.states;
+  for (const InvokeInfo& other : context.behavior.invokes) {
+    if (other.planner != invoke.planner || other.state == invoke.state) continue;
+    if (!active_together(context.behavior, other.state, invoke.state)) continue;
+    context.error(node.mark, "parallel-conflict",
+                  fmt::format("planner '{}' is invoked by '{}' and by '{}' at once", node.scalar,
+                              states[static_cast<std::size_t>(other.state)].path,
+                              states[static_cast<std::size_t>(invoke.state)].path));
+    return;
+  }
 }
 
 // A time in the state, or a part of its `after`.
@@ -69,10 +84,13 @@ void load_invoke(LoadContext& context, const core::YamlNode& node, int state) {
   invoke.state = state;
   invoke.mark = node.mark;
   invoke.planner = find_planner(context, *planner);
+  if (invoke.planner >= 0) check_asked_once(context, *planner, invoke);
   ValueScope scope;
   scope.state = state;
   const core::YamlNode& keys = context.sources[static_cast<std::size_t>(state)]->keys;
+  invoke.at_mark = node.mark;
   if (const auto* at = node.find("at")) {
+    invoke.at_mark = at->mark;
     read_at(context, *at, keys, scope, invoke);
   } else {
     invoke.at = context.behavior.expressions.add_constant(0.0, core::kTime);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "behaviors/language.h"
 #include "behaviors/load_context.h"
@@ -80,12 +81,11 @@ void add_state(LoadContext& context, StateSource& source, int parent) {
   }
   check_state_keys(context, source, info);
   states[static_cast<std::size_t>(source.index)] = info;
+  std::set<std::string_view> names;
   for (std::size_t k = 0; k < source.children.size(); ++k) {
-    for (std::size_t j = 0; j < k; ++j) {
-      if (source.children[j].name == source.children[k].name) {
-        context.error(source.children[k].mark, "duplicate",
-                      fmt::format("state '{}' is there already", source.children[k].name));
-      }
+    if (!names.insert(source.children[k].name).second) {
+      context.error(source.children[k].mark, "duplicate",
+                    fmt::format("state '{}' is there already", source.children[k].name));
     }
     add_state(context, source.children[k], source.index);
   }

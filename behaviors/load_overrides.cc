@@ -58,6 +58,23 @@ core::YamlNode* walk(LoadContext& context, core::YamlNode& start, const std::str
   return node;
 }
 
+// The unit that a value, or else the range beside it, is written with.
+std::optional<core::Dimension> written_dimension(const core::YamlNode& node) {
+  if (node.is_scalar()) {
+    const auto quantity = core::parse_quantity(node.scalar);
+    return quantity && !quantity->bare ? std::optional(quantity->dimension) : std::nullopt;
+  }
+  for (const core::YamlNode& item : node.items) {
+    if (const auto dimension = written_dimension(item)) return dimension;
+  }
+  for (const char* key : {"value", "range"}) {
+    const core::YamlNode* part = node.find(key);
+    const auto dimension = part == nullptr ? std::nullopt : written_dimension(*part);
+    if (dimension) return dimension;
+  }
+  return std::nullopt;
+}
+
 void set_parameter(LoadContext& context, const std::string& name, core::YamlNode value) {
   core::YamlNode* parameters = child(context.root, "parameters");
   core::YamlNode* parameter = parameters == nullptr ? nullptr : child(*parameters, name);
@@ -67,6 +84,13 @@ void set_parameter(LoadContext& context, const std::string& name, core::YamlNode
     context.error(value.mark, "unknown-parameter",
                   fmt::format("--set {}: unknown parameter '{}'{}", name, name,
                               core::did_you_mean(name, known)));
+    return;
+  }
+  const auto had = written_dimension(*parameter), has = written_dimension(value);
+  if (had && has && !(*had == *has)) {
+    context.error(value.mark, "dimension",
+                  fmt::format("--set {}: expected {}, got {}", name, core::dimension_name(*had),
+                              core::describe(value)));
   } else if (parameter->is_map()) {
     put(*parameter, "value", std::move(value));
   } else {

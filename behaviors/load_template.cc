@@ -169,6 +169,7 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
     context.error(name.mark, "mirror", "a mirrored template needs a first argument that is a name");
     return;
   }
+  context.mirrored.emplace_back(name.scalar, *arguments);
   Arguments image;
   for (const auto& [key, value] : *arguments) image.emplace_back(key, image_of(context, value));
   const std::string first = arguments->front().second.scalar;

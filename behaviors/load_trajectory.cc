@@ -107,6 +107,7 @@ void compile_goal(LoadContext& context, const Words& words, AxesScope axes, bool
     return;
   }
   reference.over = compile_owned_time(context, *over, axes.owner);
+  reference.over_mark = over->mark;
   set_values(*to, compile_axes(context, *to, axes, true), out);
   if (const core::YamlNode* retarget = words.find("retarget")) {
     reference.retarget = read_retarget(*retarget, context.diagnostics);
@@ -212,6 +213,7 @@ void compile_waypoints(LoadContext& context, const Words& words, const AxesScope
   }
   if (const core::YamlNode* over = words.find("over")) {
     reference.over = compile_span(context, *over, axes.owner);
+    reference.over_mark = over->mark;
   }
   std::vector<WaypointSpec> specs;
   for (const core::YamlNode& point : points->items) {

@@ -23,6 +23,13 @@ void finish_domain(LoadContext& context, TransitionInfo& transition) {
       transition.targets.count);
 }
 
+// `node`: its map, nullptr for what a state's own keys say.
+void add_transition(LoadContext& context, TransitionInfo transition, const core::YamlNode* node) {
+  finish_domain(context, transition);
+  context.transition_nodes.push_back(node);
+  context.behavior.transitions.push_back(std::move(transition));
+}
+
 void load_transition(LoadContext& context, int state, const core::YamlNode& node) {
   if (!core::expect_map(node, "a transition (a map with on, when or after)", context.diagnostics)) {
     return;
@@ -60,8 +67,7 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
   if (const auto* reason = node.find("reason")) {
     if (core::check_doc(*reason, context.diagnostics)) transition.reason = reason->scalar;
   }
-  finish_domain(context, transition);
-  context.behavior.transitions.push_back(std::move(transition));
+  add_transition(context, std::move(transition), &node);
 }
 
 // The state's own duration: `after` + `to`.
@@ -83,8 +89,7 @@ void load_timed(LoadContext& context, int state) {
   scope.state = state;
   transition.after = context.compile_time(*after, scope);
   transition.targets = load_targets(context, state, *to);
-  finish_domain(context, transition);
-  context.behavior.transitions.push_back(std::move(transition));
+  add_transition(context, std::move(transition), nullptr);
 }
 
 void load_state(LoadContext& context, int state) {
@@ -117,9 +122,9 @@ void load_safe(LoadContext& context) {
   transition.targets = load_targets(context, 0, *safe);
   transition.reason = "safe";
   if (transition.targets.count == 0) return;
-  transition.domain = 0;
   context.behavior.safe_transition = static_cast<int>(context.behavior.transitions.size());
-  context.behavior.transitions.push_back(std::move(transition));
+  add_transition(context, std::move(transition), nullptr);
+  context.behavior.transitions.back().domain = 0;
 }
 
 }  // namespace

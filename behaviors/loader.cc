@@ -70,11 +70,60 @@ void load_contents(LoadContext& context) {
   warn_absences(context);
 }
 
-std::unique_ptr<Behavior> load(core::YamlNode root, const std::string& path,
-                               const LoadOptions& options, core::Diagnostics& diagnostics) {
+std::unique_ptr<Behavior> load_once(core::YamlNode root, const std::string& path,
+                                    const LoadOptions& options, core::Diagnostics& diagnostics) {
   auto behavior = std::make_unique<Behavior>();
   LoadContext context(*behavior, options, diagnostics);
   return compile_behavior(context, std::move(root), path) ? std::move(behavior) : nullptr;
+}
+
+// The first new error of a load, nullptr if there is none.
+const core::Diagnostic* first_error(const core::Diagnostics& diagnostics, std::size_t from) {
+  for (std::size_t k = from; k < diagnostics.all().size(); ++k) {
+    if (diagnostics.all()[k].severity == core::Severity::error) return &diagnostics.all()[k];
+  }
+  return nullptr;
+}
+
+// A file that is good without --set: each override that spoils it is one error, at that override,
+// not where the file meets its value.
+bool blame_overrides(const core::YamlNode& root, const std::string& path,
+                     const LoadOptions& options, core::Diagnostics& diagnostics) {
+  LoadOptions other = options;
+  other.set.clear();
+  core::Diagnostics without = diagnostics;
+  if (load_once(root, path, other, without) == nullptr) return false;
+  bool found = false;
+  for (const auto& edit : options.set) {
+    core::Diagnostics alone = without;
+    const std::size_t before = alone.all().size();
+    other.set = {edit};
+    load_once(root, path, other, alone);
+    const core::Diagnostic* problem = first_error(alone, before);
+    if (problem == nullptr) continue;
+    found = true;
+    const std::string file = "--set " + edit.first;
+    const bool there = problem->mark.file >= 0 && alone.file(problem->mark.file) == file;
+    const core::Mark mark{diagnostics.add_file(file), there ? problem->mark.line : 1,
+                          there ? problem->mark.column : 1};
+    std::string text = problem->text;
+    if (!there && problem->mark.file >= 0) {
+      text += fmt::format(" (needed at {}:{}:{})", alone.file(problem->mark.file),
+                          problem->mark.line, problem->mark.column);
+    }
+    diagnostics.error(mark, problem->id, std::move(text));
+  }
+  return found;
+}
+
+std::unique_ptr<Behavior> load(core::YamlNode root, const std::string& path,
+                               const LoadOptions& options, core::Diagnostics& diagnostics) {
+  core::Diagnostics trial = diagnostics;
+  auto behavior = load_once(root, path, options, trial);
+  const bool blamed = behavior == nullptr && !options.set.empty() &&
+                      blame_overrides(root, path, options, diagnostics);
+  if (!blamed) diagnostics = std::move(trial);
+  return behavior;
 }
 
 }  // namespace
@@ -90,6 +139,7 @@ bool compile_behavior(LoadContext& context, core::YamlNode root, const std::stri
         core::read_text(*name, context.diagnostics, "a name").value_or(context.behavior.name);
   }
   if (load_structure(context, path)) load_contents(context);
+  if (context.diagnostics.error_count() == before) check_structure(context);
   return context.diagnostics.error_count() == before;
 }
 

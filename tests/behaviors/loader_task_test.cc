@@ -186,7 +186,7 @@ TEST(LoaderTask, RegionsThatContradictEachOtherAreErrors) {
   EXPECT_EQ(
       problems(text),
       "b.yaml:9:52: error: gains of 'k' is given by 'l' and by 'r' at once\n"
-      "b.yaml:9:79: error: the torque loop of 'left_leg' is given by 'l' and by 'r' at once\n");
+      "b.yaml:9:79: error: torque_loop 'left_leg' is given by 'l' and by 'r' at once\n");
 }
 TEST(LoaderTask, TorqueLoopsGoByExactNameThenByGlobAndOnceAJoint) {
   const auto b = load(
@@ -203,7 +203,7 @@ TEST(LoaderTask, TorqueLoopsGoByExactNameThenByGlobAndOnceAJoint) {
             0u);
   EXPECT_EQ(problems("behavior: 1\nrobot: hume\ntorque_loop: {t: {p: 1}}\n"
                      "machine: {torque_loop: {right_foot: t, right_leg: t}}\n"),
-            "b.yaml:4:40: error: 'right_foot' and 'right_leg' both name joint 'right_abduction'\n");
+            "b.yaml:4:40: error: 'right_foot' and 'right_leg' both give joint 'right_abduction' a torque_loop\n");
 }
 TEST(LoaderTask, OffTakesATorqueLoopAway) {
   const auto b = load(

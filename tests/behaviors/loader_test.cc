@@ -153,7 +153,7 @@ TEST(Loader, ATransitionNeedsACauseAndAnEffect) {
 }
 TEST(Loader, AnEventNobodyRaisesIsAWarning) {
   EXPECT_EQ(problems("behavior: 1\nevents: {start: go}\nmachine:\n"
-                     "  states: {a: {transitions: [{on: strat, to: b}]}, b: {}}\n"),
+                     "  states: {a: {transitions: [{on: strat, to: b}]}, b: {type: final}}\n"),
             "b.yaml:4:35: warning: nothing raises 'strat', and `events` does not list it (did you "
             "mean 'start'?)\n");
 }

@@ -186,7 +186,7 @@ TEST(PhysicsPlanner, ANegativeKappaNeedsARangeThatAllowsIt) {
   EXPECT_THAT(problems(walking("-0.4")), HasSubstr("error: kappa -0.4 is outside 0 .. 1"));
   EXPECT_THAT(problems(walking("$k", "parameters: {k: -0.4}\n")), HasSubstr("is outside 0 .. 1"));
   const std::string wide = "parameters: {k: {value: [-0.4, -0.4], range: [-1, 1]}}\n";
-  EXPECT_EQ(problems(walking("$k", wide)), "");
+  EXPECT_EQ(problems(walking("$k", wide)).find(": error: "), std::string::npos);
   EXPECT_THAT(physics(walking("$k", wide)), HasSubstr("error: planner 'foot' diverges"));
 }
 

@@ -157,6 +157,9 @@ TEST(Mistakes, EveryRegisteredIdIsUsedAndHasAWrongFile) {
   std::set<std::string> used, shown;
   for (const auto& [id, file] : ids_in_sources(FOOTFALL_SOURCE_DIR)) used.insert(id);
   for (const WrongFile& file : wrong_files("one")) shown.insert(file.expected.front().id);
+  core::Diagnostics nothing_there;  // the one mistake that no file can show
+  behaviors::load_behavior("no/such/file.yaml", {}, nothing_there);
+  for (const core::Diagnostic& item : nothing_there.all()) shown.insert(item.id);
   for (const core::DiagnosticInfo& info : core::diagnostic_ids()) {
     const std::string id(info.id);
     EXPECT_TRUE(used.contains(id)) << "nothing reports '" << id << "'";
