@@ -44,10 +44,10 @@ struct ReferenceSpec {
   int owner = 0;
   // Its words in the file and their owner: a task whose other keys change keeps its trajectory.
   int source = -1;
-  int over = -1;    // expression of a time; ellipse, surface: of the centre, of the height above
+  int over = -1;  // expression of a time; ellipse, surface: of the centre, of the height above
   core::Mark over_mark;
-  int period = -1;  // ellipse: expression of a time
-  int ramp = -1;    // ellipse: expression of a time, -1: one period
+  int period = -1;         // ellipse: expression of a time
+  int ramp = -1;           // ellipse: expression of a time, -1: one period
   double direction = 1.0;  // ellipse: 1 from its first axis towards the others, -1 back
   Range waypoints;         // into Behavior::waypoints
   // Part of the trajectory's time during which it follows a changing `to`; 0: never. Following to

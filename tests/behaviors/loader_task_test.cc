@@ -183,10 +183,9 @@ TEST(LoaderTask, RegionsThatContradictEachOtherAreErrors) {
       "t}}\n"
       "    r: {contacts: [left_foot, right_foot], gains: {k: {kd: 3}}, torque_loop: {left_leg: "
       "t}}\n";
-  EXPECT_EQ(
-      problems(text),
-      "b.yaml:9:52: error: gains of 'k' is given by 'l' and by 'r' at once\n"
-      "b.yaml:9:79: error: torque_loop 'left_leg' is given by 'l' and by 'r' at once\n");
+  EXPECT_EQ(problems(text),
+            "b.yaml:9:52: error: gains of 'k' is given by 'l' and by 'r' at once\n"
+            "b.yaml:9:79: error: torque_loop 'left_leg' is given by 'l' and by 'r' at once\n");
 }
 TEST(LoaderTask, TorqueLoopsGoByExactNameThenByGlobAndOnceAJoint) {
   const auto b = load(
@@ -203,7 +202,8 @@ TEST(LoaderTask, TorqueLoopsGoByExactNameThenByGlobAndOnceAJoint) {
             0u);
   EXPECT_EQ(problems("behavior: 1\nrobot: hume\ntorque_loop: {t: {p: 1}}\n"
                      "machine: {torque_loop: {right_foot: t, right_leg: t}}\n"),
-            "b.yaml:4:40: error: 'right_foot' and 'right_leg' both give joint 'right_abduction' a torque_loop\n");
+            "b.yaml:4:40: error: 'right_foot' and 'right_leg' both give joint 'right_abduction' a "
+            "torque_loop\n");
 }
 TEST(LoaderTask, OffTakesATorqueLoopAway) {
   const auto b = load(
