@@ -1,6 +1,8 @@
 // A compiled behavior: immutable flat arrays, built at load, indexed by small integers.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +34,8 @@ struct ScriptFile {
   std::string text;
 };
 
+inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
 struct PlannerInfo {
   std::string name;
   FootPlannerSpec spec;      // its kappa: unless kappa_parameter says where it is
@@ -60,6 +64,10 @@ struct Behavior : Chart {
   std::vector<ControlSpec> controls;  // by Statechart::control()
   std::vector<TaskSpec> tasks;
   std::vector<AxisSpec> axes;
+  std::vector<WaypointSpec> waypoints;
+  // Least and largest kp, ki, kd that an expression may give: 0 or more, or gains.ranges.
+  std::array<std::array<double, 2>, 3> gain_limits = {
+      {{0.0, kUnlimited}, {0.0, kUnlimited}, {0.0, kUnlimited}}};
   std::vector<InternalSpec> internals;
   std::vector<TransitionSpec> contact_transitions;
   std::vector<TorqueLoopTable> torque_loops;

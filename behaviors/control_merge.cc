@@ -10,6 +10,27 @@ namespace {
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
+// The most knots that the tasks of one control spec may need: the entry and the points of each
+// axis.
+std::size_t knot_capacity(const Behavior& behavior) {
+  std::size_t most = 0;
+  for (const ControlSpec& control : behavior.controls) {
+    std::size_t knots = 0;
+    for (int t = 0; t < control.tasks.count; ++t) {
+      const TaskSpec& task = behavior.tasks[at(control.tasks.first + t)];
+      const int points = task.reference.waypoints.count;
+      if (points > 0) knots += at(task.axes.count * (points + 1));
+    }
+    most = std::max(most, knots);
+  }
+  return most;
+}
+
+void clear_fresh(tasks::ControlSet& set) noexcept {
+  for (int i = 0; i < set.task_count; ++i) set.tasks[at(i)].fresh = false;
+  for (int i = 0; i < set.axis_count; ++i) set.axes[at(i)].fresh = false;
+}
+
 }  // namespace
 
 ControlMerge::ControlMerge(const Behavior& behavior, Statechart& statechart)
@@ -20,19 +41,20 @@ ControlMerge::ControlMerge(const Behavior& behavior, Statechart& statechart)
       old_primary_(std::make_unique<Bank>()),
       old_other_(std::make_unique<Bank>()),
       old_set_(std::make_unique<tasks::ControlSet>()),
-      old_other_set_(std::make_unique<tasks::ControlSet>()) {}
+      old_other_set_(std::make_unique<tasks::ControlSet>()) {
+  const std::size_t knots = knot_capacity(behavior);
+  for (Bank* bank : {primary_.get(), other_.get(), old_primary_.get(), old_other_.get()}) {
+    bank->knots.resize(knots);
+  }
+}
 
 void ControlMerge::update(const Measure& measure, bool moved) noexcept {
   control_.transition_entered = false;
-  if (moved) {
-    rebuild(measure);
-  } else {
-    for (int i = 0; i < control_.primary.task_count; ++i)
-      control_.primary.tasks[at(i)].fresh = false;
-    for (int i = 0; i < control_.other.task_count; ++i) control_.other.tasks[at(i)].fresh = false;
-  }
-  advance(*primary_, control_.primary);
-  if (control_.has_other) advance(*other_, control_.other);
+  clear_fresh(control_.primary);
+  clear_fresh(control_.other);
+  if (moved) rebuild(measure);
+  advance(*primary_, control_.primary, measure);
+  if (control_.has_other) advance(*other_, control_.other, measure);
   weigh_transition();
 }
 
@@ -48,15 +70,20 @@ void ControlMerge::rebuild(const Measure& measure) noexcept {
   update_transition(spec, measure);
 }
 
-// The task as it was in force before: in the set with the greater weight first.
-ControlMerge::Kept ControlMerge::find_kept(int instance) const noexcept {
+// The task as it was in force before (axis < 0), or one of its axes: in the set with the greater
+// weight first.
+ControlMerge::Kept ControlMerge::find_kept(int instance, int axis) const noexcept {
   for (const bool other : {other_first_, !other_first_}) {
     if (other && !old_has_other_) continue;
     const Bank& bank = other ? *old_other_ : *old_primary_;
+    const tasks::ControlSet& set = other ? *old_other_set_ : *old_set_;
     if (bank.spec == nullptr) continue;
     for (int k = 0; k < bank.task_count; ++k) {
-      if (bank.tasks[at(k)].spec->instance == instance) {
-        return {&bank, other ? old_other_set_.get() : old_set_.get(), k};
+      const tasks::TaskCommand& task = set.tasks[at(k)];
+      if (task.instance != instance) continue;
+      if (axis < 0) return {&bank, &set, k, -1};
+      for (int slot = task.first_axis; slot < task.first_axis + task.axis_count; ++slot) {
+        if (set.axes[at(slot)].axis == axis) return {&bank, &set, k, slot};
       }
     }
   }
@@ -69,6 +96,7 @@ void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& s
   bank.frozen = false;
   bank.reported = false;
   bank.task_count = spec.tasks.count;
+  bank.knot_count = 0;
   set.contact_count = static_cast<int>(spec.contacts.size());
   std::copy(spec.contacts.begin(), spec.contacts.end(), set.contacts.begin());
   set.task_count = spec.tasks.count;
@@ -79,15 +107,14 @@ void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& s
   set.internal_count = spec.internals.count;
   for (int k = 0; k < spec.internals.count; ++k) {
     const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
-    set.internals[at(k)] = {internal.instance, internal.contact_a, internal.contact_b, 0.0, 0.0};
+    set.internals[at(k)] = {internal.instance, internal.contact_a, internal.contact_b, 0.0, 0.0,
+                            internal.scale};
   }
 }
 
 void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index,
                              const Measure& measure) noexcept {
-  const Kept kept = find_kept(spec.instance);
-  TaskState& task = bank.tasks[at(index)];
-  task = {&spec, statechart_.entry_serial(spec.reference.owner), statechart_.context().tick};
+  bank.tasks[at(index)] = {&spec, statechart_.entry_serial(spec.reference.owner)};
   tasks::TaskCommand& command = set.tasks[at(index)];
   command = {};
   command.instance = spec.instance;
@@ -97,58 +124,62 @@ void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec&
   command.priority = spec.priority;
   command.first_axis = set.axis_count;
   command.axis_count = spec.axes.count;
-  command.fresh = kept.task < 0;
+  command.fresh = find_kept(spec.instance, -1).task < 0;
   set.axis_count += spec.axes.count;
-  const TaskState* before = kept.task < 0 ? nullptr : &kept.bank->tasks[at(kept.task)];
-  const int before_first = before == nullptr ? 0 : kept.set->tasks[at(kept.task)].first_axis;
-  const bool same = before != nullptr && before->spec->axes.first == spec.axes.first &&
-                    before->owner_serial == task.owner_serial;
   for (int k = 0; k < spec.axes.count; ++k) {
     const int axis = behavior_.axes[at(spec.axes.first + k)].axis;
-    const int slot = command.first_axis + k;
-    set.axes[at(slot)] = {};
-    set.axes[at(slot)].axis = axis;
-    AxisState& state = bank.axes[at(slot)];
-    if (same) {  // the reference goes on as it was
-      state = kept.bank->axes[at(before_first + k)];
-      bank.entry[at(slot)] = kept.bank->entry[at(before_first + k)];
-      continue;
-    }
-    state = {};
-    state.motion.pos = measure.position(spec.type, spec.point, axis);
-    for (int j = 0; before != nullptr && j < before->spec->axes.count; ++j) {
-      if (behavior_.axes[at(before->spec->axes.first + j)].axis == axis) {
-        state.motion = kept.bank->axes[at(before_first + j)].motion;
-      }
-    }
-    bank.entry[at(slot)] = state.motion.pos;
+    const Kept kept = find_kept(spec.instance, axis);
+    tasks::AxisCommand& out = set.axes[at(command.first_axis + k)];
+    out = kept.slot < 0 ? tasks::AxisCommand{} : kept.set->axes[at(kept.slot)];
+    out.axis = axis;
+    out.slope = 0.0;
+    out.fresh = kept.slot < 0;
+    fill_axis(bank, set, command, spec, k, measure);
   }
-  if (same) {
-    task.start_tick = before->start_tick;
+  for (int k = 0; k < spec.axes.count; ++k) {  // when `entry` is known of all axes
+    if (bank.axes[at(command.first_axis + k)].begins) start_axis(bank, command, spec, k, measure);
+  }
+}
+
+// The reference goes on if it is the same words in the same stay in their state, whatever else of
+// the task has changed; else it starts from what was the reference, or from what is measured.
+void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
+                             const tasks::TaskCommand& command, const TaskSpec& spec, int k,
+                             const Measure& measure) noexcept {
+  const int axis = behavior_.axes[at(spec.axes.first + k)].axis;
+  const int slot = command.first_axis + k;
+  AxisState& state = bank.axes[at(slot)];
+  const Kept kept = find_kept(spec.instance, axis);
+  state = {};
+  state.begins = true;
+  if (kept.slot < 0) {
+    state.motion.pos = measured(measure, spec, set, axis);
   } else {
-    start_reference(bank, command, spec);
+    const TaskState& before = kept.bank->tasks[at(kept.task)];
+    const AxisState& old = kept.bank->axes[at(kept.slot)];
+    if (before.spec->reference.source == spec.reference.source &&
+        before.owner_serial == statechart_.entry_serial(spec.reference.owner)) {
+      state = old;
+      bank.entry[at(slot)] = kept.bank->entry[at(kept.slot)];
+      state.begins = false;
+      state.first_knot = bank.knot_count;
+      std::copy_n(kept.bank->knots.begin() + old.first_knot, old.knot_count,
+                  bank.knots.begin() + state.first_knot);
+      bank.knot_count += state.knot_count;
+      return;
+    }
+    state.motion = old.motion;
+    // The same place seen from another origin: `frame` or the stance contacts may have changed.
+    if (spec.frame == tasks::Frame::stance || before.spec->frame != spec.frame) {
+      state.motion.pos +=
+          measured(measure, spec, set, axis) - measured(measure, *before.spec, *kept.set, axis);
+    }
   }
+  bank.entry[at(slot)] = state.motion.pos;
 }
 
-// `over` and `to` are read here, at entry; a value that is not finite makes the axis stay.
-void ControlMerge::start_reference(Bank& bank, const tasks::TaskCommand& command,
-                                   const TaskSpec& spec) noexcept {
-  if (spec.reference.kind != ReferenceSpec::Kind::trajectory) return;
-  const double* entry = &bank.entry[at(command.first_axis)];
-  const double over = value_or(spec.reference.over, 0.0, bank, entry);
-  for (int k = 0; k < spec.axes.count; ++k) {
-    const AxisSpec& axis = behavior_.axes[at(spec.axes.first + k)];
-    AxisState& state = bank.axes[at(command.first_axis + k)];
-    const double to = value_or(axis.value, state.motion.pos, bank, entry);
-    const double end = value_or(axis.end_velocity, 0.0, bank, entry);
-    state.start_tick = statechart_.context().tick;
-    state.over = over;
-    state.segment = make_segment(spec.reference.shape, state.motion, to, end, over);
-  }
-}
-
-void ControlMerge::advance(Bank& bank, tasks::ControlSet& set) noexcept {
-  for (int k = 0; k < bank.task_count; ++k) advance_task(bank, set, k);
+void ControlMerge::advance(Bank& bank, tasks::ControlSet& set, const Measure& measure) noexcept {
+  for (int k = 0; k < bank.task_count; ++k) advance_task(bank, set, k, measure);
   const ControlSpec& spec = *bank.spec;
   for (int k = 0; k < spec.internals.count; ++k) {
     const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
@@ -160,56 +191,42 @@ void ControlMerge::advance(Bank& bank, tasks::ControlSet& set) noexcept {
   }
 }
 
-void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index) noexcept {
+void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index,
+                                const Measure& measure) noexcept {
   const TaskSpec& spec = *bank.tasks[at(index)].spec;
-  tasks::TaskCommand& command = set.tasks[at(index)];
+  const tasks::TaskCommand& command = set.tasks[at(index)];
   const double* entry = &bank.entry[at(command.first_axis)];
-  const double* values = statechart_.context().parameters;
-  const auto gain = [values](int slot) { return slot < 0 ? 0.0 : values[slot]; };
-  command.weight = value_or(spec.weight, 1.0, bank, entry);
-  command.acceleration_limit = value_or(spec.acceleration_limit, 0.0, bank, entry);
-  command.integral_limit = value_or(spec.integral_limit, 0.0, bank, entry);
   if (spec.reference.retarget > 0.0 && !bank.frozen) retarget(bank, spec, command);
   for (int k = 0; k < spec.axes.count; ++k) {
     const AxisSpec& axis = behavior_.axes[at(spec.axes.first + k)];
-    AxisState& state = bank.axes[at(command.first_axis + k)];
-    if (!bank.frozen && spec.reference.kind == ReferenceSpec::Kind::value) {
-      state.motion = {value_or(axis.value, state.motion.pos, bank, entry), 0.0, 0.0};
-    } else if (!bank.frozen && spec.reference.kind == ReferenceSpec::Kind::trajectory) {
-      const EvaluationContext& context = statechart_.context();
-      state.motion = sample(state.segment,
-                            static_cast<double>(context.tick - state.start_tick) * context.period);
-    }
     tasks::AxisCommand& out = set.axes[at(command.first_axis + k)];
-    out.kp = gain(axis.kp);
-    out.ki = gain(axis.ki);
-    out.kd = gain(axis.kd);
-    const bool free = spec.reference.kind == ReferenceSpec::Kind::none;  // damping: velocity 0
-    out.ref = free ? 0.0 : state.motion.pos;
-    out.ref_vel = free ? 0.0 : state.motion.vel;
-    out.ref_acc = free ? 0.0 : state.motion.acc;
+    out.kp = checked_gain(axis, axis.kp, 0, out.kp, bank, entry);
+    out.ki = checked_gain(axis, axis.ki, 1, out.ki, bank, entry);
+    out.kd = checked_gain(axis, axis.kd, 2, out.kd, bank, entry);
+    const tasks::AxisCommand usual;
+    out.weight = axis.weight < 0 ? usual.weight : value_or(axis.weight, out.weight, bank, entry);
+    out.acceleration_limit =
+        axis.acceleration_limit < 0
+            ? usual.acceleration_limit
+            : value_or(axis.acceleration_limit, out.acceleration_limit, bank, entry);
+    out.integral_limit = axis.integral_limit < 0
+                             ? usual.integral_limit
+                             : value_or(axis.integral_limit, out.integral_limit, bank, entry);
+    advance_axis(bank, command, spec, k, measure, out);
   }
 }
 
-// A changed `to` starts a new segment from where the reference is, for the time that is left.
-void ControlMerge::retarget(Bank& bank, const TaskSpec& spec,
-                            const tasks::TaskCommand& command) noexcept {
-  const EvaluationContext& context = statechart_.context();
-  const double* entry = &bank.entry[at(command.first_axis)];
-  for (int k = 0; k < spec.axes.count; ++k) {
-    const AxisSpec& axis = behavior_.axes[at(spec.axes.first + k)];
-    AxisState& state = bank.axes[at(command.first_axis + k)];
-    if (axis.value < 0 || state.segment.shape == Shape::hold) continue;
-    const double to = value_or(axis.value, state.segment.to, bank, entry);
-    const double t = static_cast<double>(context.tick - state.start_tick) * context.period;
-    const double left = state.segment.duration - t;
-    if (to == state.segment.to || left < (1.0 - spec.reference.retarget) * state.over) continue;
-    const Shape shape =
-        spec.reference.shape == Shape::polynomial3 ? Shape::polynomial3 : Shape::polynomial5;
-    const Motion now = sample(state.segment, t);
-    state.segment = make_segment(shape, now, to, state.segment.end_velocity, left);
-    state.start_tick = context.tick;
-  }
+// A slot's value, or an expression's, which must stay within gains.ranges: else as it was before.
+double ControlMerge::checked_gain(const AxisSpec& axis, int slot, std::size_t gain, double before,
+                                  Bank& bank, const double* entry) noexcept {
+  if (slot >= 0) return statechart_.context().parameters[slot];
+  if (axis.computed[gain] < 0) return 0.0;
+  const double value = value_or(axis.computed[gain], before, bank, entry);
+  const std::array<double, 2>& limits = behavior_.gain_limits[gain];
+  if (value >= limits[0] && value <= limits[1]) return value;
+  if (!bank.reported) statechart_.report_execution_error();
+  bank.reported = true;
+  return std::clamp(before, limits[0], limits[1]);
 }
 
 double ControlMerge::value_or(int expression, double fallback, Bank& bank,

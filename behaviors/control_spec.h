@@ -2,6 +2,7 @@
 // arrays, one ControlSpec for each combination of states that differ in control.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "behaviors/chart.h"
@@ -10,14 +11,29 @@
 
 namespace footfall::behaviors {
 
-// One axis of a task. Gains are slots of the parameter array, -1 for 0; the rest are expressions.
+// One axis of a task. Gains are slots of the parameter array, -1 for 0; the rest are expressions,
+// -1: the default of tasks::AxisCommand.
 struct AxisSpec {
   int axis = 0;
   int kp = -1, ki = -1, kd = -1;
+  std::array<int, 3> computed{-1, -1, -1};  // kp, ki, kd that are expressions, where no slot is
+  int weight = -1;
+  int acceleration_limit = -1;
+  int integral_limit = -1;
   int value = -1;         // reference kind `value`: position; trajectories: `to`, -1: stays
   int end_velocity = -1;  // trajectories, -1: 0
+  int radius = -1;        // ellipse: expression, -1: 0
+  int phase = -1;         // ellipse: expression, -1: 0
   core::Mark mark;        // of its entry in `axes` or `joints`, else of these, else of the task
   core::Mark value_mark;  // of what `value` was compiled from
+};
+
+// A point that a trajectory passes: when, and where.
+struct WaypointSpec {
+  int at = -1;  // expression of a time; -1: `part` of the trajectory's `over`
+  double part = 1.0;
+  bool after_previous = false;  // `at` counts from the point before, not from the start
+  std::vector<int> to;          // expressions by axis of the task, -1: not this axis
 };
 
 // Where a task's reference comes from. `owner` is the state whose entry starts a trajectory.
@@ -26,8 +42,14 @@ struct ReferenceSpec {
   Kind kind = Kind::none;
   Shape shape = Shape::hold;
   int owner = 0;
-  int over = -1;  // expression of a time
+  // Its words in the file and their owner: a task whose other keys change keeps its trajectory.
+  int source = -1;
+  int over = -1;  // expression of a time; ellipse, surface: of the centre, of the height above
   core::Mark over_mark;
+  int period = -1;         // ellipse: expression of a time
+  int ramp = -1;           // ellipse: expression of a time, -1: one period
+  double direction = 1.0;  // ellipse: 1 from its first axis towards the others, -1 back
+  Range waypoints;         // into Behavior::waypoints
   // Part of the trajectory's time during which it follows a changing `to`; 0: never. Following to
   // the very end would ask for accelerations without bound. `retarget: true` is 80 %.
   double retarget = 0.0;
@@ -39,9 +61,6 @@ struct TaskSpec {
   int point = -1;
   tasks::Frame frame = tasks::Frame::world;
   int priority = 1;
-  int weight = -1;  // expressions, -1: the default of TaskCommand
-  int acceleration_limit = -1;
-  int integral_limit = -1;
   Range axes;  // into Behavior::axes
   ReferenceSpec reference;
   core::Mark mark;  // of the task's name

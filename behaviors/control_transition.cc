@@ -51,8 +51,10 @@ void ControlMerge::begin_transition(const TransitionSpec& transition,
     fill(*other_, control_.other, left, measure);
     if (old_primary_->spec == &left) {  // in force until now: exactly its references
       std::copy_n(old_primary_->axes.begin(), old_set_->axis_count, other_->axes.begin());
+      std::copy_n(old_primary_->knots.begin(), old_primary_->knot_count, other_->knots.begin());
+      other_->knot_count = old_primary_->knot_count;
     } else {
-      advance(*other_, control_.other);  // passed in no time: as it would have begun
+      advance(*other_, control_.other, measure);  // passed in no time: as it would have begun
     }
     other_->frozen = true;
   }

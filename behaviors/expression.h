@@ -135,9 +135,10 @@ struct ExpressionScope {
   int state = -1;  // whose `t` it is; -1: `t` is not available
   // Index of a state by its (partial) name; -1 and a reason otherwise.
   std::function<int(std::string_view name, std::string& why)> find_state;
-  const std::vector<std::string>* entry_axes = nullptr;  // names of `entry.AXIS`
-  int entry_axis = -1;                                   // what a lone `entry` is
-  core::Dimension entry_dimension;                       // of the task's axes
+  const std::vector<std::string>* entry_axes = nullptr;            // names of `entry.AXIS`
+  int entry_axis = -1;                                             // what a lone `entry` is
+  core::Dimension entry_dimension;                                 // of the task's axes
+  const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
   // `max mean rms count` of one signal over a run (expectations only): the index of the signal that
   // holds it, -1 if there is none.
   std::function<int(std::string_view reduction, int signal)> find_reduction;

@@ -192,7 +192,11 @@ Operand ExpressionParser::parse_entry(const Token& token) {
     fail(token, "misplaced-name", "'entry' needs an axis here: write entry.x");
   }
   emit(Op::entry, axis);
-  return {scope_.entry_dimension, false, false, 0.0};
+  const core::Dimension dimension =
+      scope_.entry_dimensions == nullptr
+          ? scope_.entry_dimension
+          : (*scope_.entry_dimensions)[static_cast<std::size_t>(axis)];
+  return {dimension, false, false, 0.0};
 }
 
 Operand ExpressionParser::parse_name(const Token& token) {

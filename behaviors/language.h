@@ -41,6 +41,8 @@ extern const std::span<const core::WordSpec> kTransitionForms;
 extern const core::KeyTable kTaskKeys;  // selector: type
 extern const core::KeyTable kInternalKeys;
 extern const core::KeyTable kTrajectoryKeys;  // selector: trajectory
+extern const core::KeyTable kWaypointKeys;
+extern const std::span<const core::WordSpec> kDirections;
 extern const std::span<const core::WordSpec> kTaskTypes;
 extern const std::span<const core::WordSpec> kFrames;
 extern const std::span<const core::WordSpec> kConventions;

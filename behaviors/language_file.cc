@@ -64,10 +64,11 @@ constexpr KeySpec kGainRangesRows[] = {
 };
 
 constexpr KeySpec kGainsRows[] = {
-    key("kp", by_axis(quantity(kRateSquared)), "acceleration per error").otherwise("0"),
-    key("ki", by_axis(quantity(kRateCubed)), "acceleration per integral of the error")
+    key("kp", computed(by_axis(quantity(kRateSquared))), "acceleration per error").otherwise("0"),
+    key("ki", computed(by_axis(quantity(kRateCubed))), "acceleration per integral of the error")
         .otherwise("0"),
-    key("kd", by_axis(quantity(kRate)), "acceleration per error of velocity").otherwise("0"),
+    key("kd", computed(by_axis(quantity(kRate))), "acceleration per error of velocity")
+        .otherwise("0"),
 };
 
 constexpr KeySpec kGainTablesRows[] = {
@@ -177,7 +178,8 @@ constinit const core::KeyTable kGainsKeys = {
     .id = "gains",
     .doc =
         "Gains of one task: u = x''_ref + kp e + ki ∫e + kd e'. At least one of them; a number "
-        "for all axes, a list in the order of the task's axes, or a map by axis or joint.",
+        "for all axes, a list in the order of the task's axes, or a map by axis or joint. Plain "
+        "numbers are live gains; what holds a parameter or an expression is computed every tick.",
     .keys = kGainsRows,
     .one_of = {"kp ki kd"},
     .part = true};

@@ -15,12 +15,17 @@ constexpr WordSpec kTaskTypeRows[] = {
     {"point_position", "a named point or contact"},
     {"joint_posture", "joint angles"},
     {"joint_damping", "brings joints to rest: kd only, no reference"},
+    {"frame_orientation",
+     "the orientation of a named point's frame; roll, pitch and yaw as in body_orientation"},
+    {"frame_pose", "place and orientation of a named point's frame"},
+    {"centroidal_angular_momentum",
+     "angular momentum h about the centre of mass: h' = h'_ref + kd e + kp ∫e, no ki"},
 };
 
 constexpr WordSpec kFrameRows[] = {
     {"world", "fixed"},
-    {"stance", "of the foot that stands"},
-    {"heading", "upright, turned to where the base looks"},
+    {"stance", "positions: from the mean of the contact points in force, the world's directions"},
+    {"heading", "upright, turned to where the base (a frame_orientation: the frame itself) looks"},
 };
 
 constexpr ValueSpec kReferenceValue =
@@ -33,29 +38,34 @@ constexpr KeySpec kTaskRows[] = {
         "which axes; one left out is free, the order is that of "
         "`reference` and gains")
         .otherwise("all")
-        .only("com_position body_orientation point_position"),
+        .only("com_position body_orientation point_position frame_orientation frame_pose "
+              "centroidal_angular_momentum"),
     key("joints", list(name_of("a joint")), "which joints, by name or glob (\"*_hip\")")
         .otherwise("all")
         .only("joint_posture joint_damping"),
     key("point", name_of("a contact or point"), "which point of the robot; needed")
-        .only("point_position"),
+        .only("point_position frame_orientation frame_pose"),
     key("frame", choice(kFrameRows), "in which its axes are meant")
-        .otherwise("world; orientations heading"),
+        .otherwise("world; orientations heading")
+        .only("com_position body_orientation point_position frame_orientation frame_pose "
+              "centroidal_angular_momentum"),
     key("priority", integer(1, 1000),
         "its level: a larger number acts only in the null space of the smaller ones")
         .otherwise("1"),
-    key("weight", computed(quantity(kNone)), "against the other tasks of its level").otherwise("1"),
+    key("weight", computed(by_axis(quantity(kNone))), "against the other tasks of its level")
+        .otherwise("1"),
     key("reference", kReferenceValue, map_of(kTrajectoryKeys),
         "what it should be: a value an axis (number, expression, signal, `planner.NAME.target`), "
         "or a trajectory")
-        .only("com_position body_orientation point_position joint_posture"),
+        .only("com_position body_orientation point_position joint_posture frame_orientation "
+              "frame_pose centroidal_angular_momentum"),
     key("gains", name_of("a gain table"), map_of(kGainsKeys),
         "its gains, or another table that has them")
         .otherwise("those of the state's or stack's table"),
-    key("integral_limit", computed(any_quantity("m s or rad s")),
+    key("integral_limit", computed(by_axis(any_quantity("m s or rad s"))),
         "bound of the integral of the error on each axis")
         .otherwise("none"),
-    key("acceleration_limit", computed(any_quantity("m/s^2 or rad/s^2")),
+    key("acceleration_limit", computed(by_axis(any_quantity("m/s^2 or rad/s^2"))),
         "bound of the acceleration it asks for on each axis")
         .otherwise("none"),
     key("doc", text_of("a text"), "what it is for, in a line"),
@@ -66,8 +76,13 @@ constexpr WordSpec kConventionRows[] = {
     {"sum", "the reference is twice that: the paper's way"},
 };
 
+constexpr WordSpec kBetweenRows[] = {
+    {"all", "every pair of the contacts in force that has no internal force of its own"},
+};
+
 constexpr KeySpec kInternalRows[] = {
-    key("between", pair(name_of("a contact")), "the two contacts").required(),
+    key("between", pair(name_of("a contact")), choice(kBetweenRows), "the two contacts, or all")
+        .required(),
     key("reference", computed(quantity(kForce)), "positive pushes them apart").required(),
     key("feedback", computed(quantity(kNone)), "gain on the error of the measured force")
         .otherwise("0"),
@@ -80,22 +95,55 @@ constexpr WordSpec kTrajectoryRows[] = {
     {"polynomial", "of order 3 or 5, from value and velocity at entry"},
     {"cosine", "half a cosine wave, at rest at both ends"},
     {"minimum_jerk", "the smoothest motion"},
+    {"ellipse", "turns about a centre, growing from nothing"},
+    {"waypoints", "passes points smoothly"},
+    {"surface", "the world's surface below, and a height above it: axes [z] of a position"},
 };
-constexpr std::string_view kMoving = "polynomial cosine minimum_jerk";
+constexpr std::string_view kGoing = "polynomial cosine minimum_jerk ellipse surface";
+constexpr std::string_view kLasting = "polynomial cosine minimum_jerk ellipse surface waypoints";
+constexpr std::string_view kArriving = "polynomial minimum_jerk ellipse surface waypoints";
+constexpr std::string_view kFollowing = "polynomial cosine minimum_jerk surface";
+
+constexpr WordSpec kDirectionRows[] = {
+    {"positive", "from the first axis towards the second"},
+    {"negative", "the other way"},
+};
+
+constexpr KeySpec kWaypointRows[] = {
+    key("at", computed(quantity(kTime)), quantity(kNone, "a part of `over`"),
+        "when: since entry, or a part of the trajectory's `over`"),
+    key("over", computed(quantity(kTime)), "or: since the point before"),
+    key("to", kReferenceValue, "where; an axis left out of a map goes on to its next point")
+        .required(),
+};
 
 constexpr KeySpec kTrajectoryKeyRows[] = {
     key("trajectory", choice(kTrajectoryRows), "its shape").required(),
     key("order", integer(3, 5), "3 or 5").only("polynomial"),
-    key("to", kReferenceValue, "where it ends; an axis left out of a map stays").only(kMoving),
-    key("over", computed(quantity(kTime)), "how long it takes, read at entry").only(kMoving),
+    key("to", kReferenceValue,
+        "where it ends; an axis left out of a map stays. Ellipse: of its centre; surface: height "
+        "above it")
+        .only(kGoing),
+    key("over", computed(quantity(kTime)), "how long it takes, read at entry").only(kLasting),
     key("end_velocity", computed(by_axis(any_quantity("m/s or rad/s"))),
         "velocity at the end, kept afterwards")
         .otherwise("0")
-        .only("polynomial minimum_jerk"),
+        .only(kArriving),
     key("retarget", boolean(), quantity(kNone, "a part of `over`, at most 95 %"),
         "whether it follows a `to` that changes: true (for 80 % of `over`), or for which part")
         .otherwise("false")
-        .only(kMoving),
+        .only(kFollowing),
+    key("radius", computed(by_axis(any_quantity("m or rad"))), "of the ellipse along each axis")
+        .only("ellipse"),
+    key("period", computed(quantity(kTime)), "of a turn").only("ellipse"),
+    key("phase", computed(by_axis(quantity(kNone, "an angle"))), "of the turn at entry")
+        .otherwise("0")
+        .only("ellipse"),
+    key("direction", choice(kDirectionRows), "of the turn").otherwise("positive").only("ellipse"),
+    key("ramp", computed(quantity(kTime)), "in which it grows from nothing, read at entry")
+        .otherwise("one period")
+        .only("ellipse"),
+    key("points", list(map_of(kWaypointKeys)), "what it passes, in their order").only("waypoints"),
 };
 
 }  // namespace
@@ -114,6 +162,8 @@ constinit const core::KeyTable kInternalKeys = {
     .doc = "A force between contacts that moves nothing. Pairs that are not named get 0 N.",
     .keys = kInternalRows,
     .part = true};
+constinit const core::KeyTable kWaypointKeys = {
+    .id = "waypoint", .doc = "A point that is passed, and when.", .keys = kWaypointRows};
 constinit const core::KeyTable kTrajectoryKeys = {
     .id = "trajectory",
     .doc = "A motion from the value at entry, with feed-forward.",
@@ -124,6 +174,7 @@ constinit const core::KeyTable kTrajectoryKeys = {
 constinit const std::span<const core::WordSpec> kTaskTypes = kTaskTypeRows;
 constinit const std::span<const core::WordSpec> kFrames = kFrameRows;
 constinit const std::span<const core::WordSpec> kConventions = kConventionRows;
+constinit const std::span<const core::WordSpec> kDirections = kDirectionRows;
 constinit const std::span<const core::WordSpec> kTrajectories = kTrajectoryRows;
 
 }  // namespace footfall::behaviors

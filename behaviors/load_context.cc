@@ -60,7 +60,7 @@ int LoadContext::compile(const core::YamlNode& node, std::string_view text, std:
   names.state = scope.state;
   names.entry_axes = scope.entry_axes;
   names.entry_axis = scope.entry_axis;
-  names.entry_dimension = scope.entry_dimension;
+  names.entry_dimensions = scope.entry_dimensions;
   names.find_state = [this, &scope](std::string_view name, std::string& why) {
     return find_target(std::max(0, scope.state), name, why);
   };

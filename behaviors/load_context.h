@@ -42,8 +42,10 @@ struct GainEntry {
   std::string name;                      // `gains.single.swing`
   std::array<int, 3> slots{-1, -1, -1};  // kp, ki, kd
   std::array<int, 3> sizes{0, 0, 0};
-  std::vector<std::string> axes;  // of the first task that used it
+  std::array<bool, 3> computed{};  // is an expression: compiled where it is used, not live
+  std::vector<std::string> axes;   // of the first task that used it
   bool made = false;
+  bool overlaid = false;  // some task has it, if under an inner layer's
 };
 
 // What names mean inside an expression or value.
@@ -51,7 +53,7 @@ struct ValueScope {
   int state = -1;                                        // the state it is written in
   const std::vector<std::string>* entry_axes = nullptr;  // in a task's reference
   int entry_axis = -1;
-  core::Dimension entry_dimension;
+  const std::vector<core::Dimension>* entry_dimensions = nullptr;
 };
 
 // An event that an action raises.
@@ -84,7 +86,9 @@ struct LoadContext {
   std::vector<std::string> script_patterns;      // of footfall.on
   std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
-  std::vector<std::string_view> task_type_of_name;  // by Behavior::task_names
+  std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and what to say of them
+  std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source
+  std::vector<std::string_view> task_type_of_name;                   // by Behavior::task_names
   int expanded_states = 0;
   mutable int state_guesses = 0;  // names of states that were looked for in vain
   bool states_missing = false;    // after an error in a template: a name unknown may be one of them

@@ -53,46 +53,61 @@ class ControlLoader {
       }
       behavior_.controls[static_cast<std::size_t>(id)] = std::move(control);
     }
-    make_unused_gains(context_);
     warn_incomplete_gains(context_);
+    make_unused_gains(context_);
   }
 
  private:
   const StateInfo& state(int s) const { return behavior_.states[static_cast<std::size_t>(s)]; }
   int& count_of(int s) { return counts_[static_cast<std::size_t>(s)]; }
 
-  // Combinations below a state: 1 where nothing below it controls.
+  bool controls(int c) const { return controls_[static_cast<std::size_t>(c)]; }
+
+  // Combinations below a state: 1 where nothing below it controls. Children of a compound state
+  // that say nothing, nor anything below them, are one and the same: the first combination.
   void count_configurations(int s) {
+    const bool parallel = state(s).kind == StateKind::parallel;
     bool below = false;
-    std::int64_t count = state(s).kind == StateKind::parallel ? 1 : 0;
+    bool silent = false;
+    std::int64_t count = parallel ? 1 : 0;
     for (int c = s + 1; c < state(s).end; c = state(c).end) {
       if (state(c).history >= 0) continue;
-      below = below || controls_[static_cast<std::size_t>(c)];
-      count = state(s).kind == StateKind::parallel ? count * count_of(c) : count + count_of(c);
+      below = below || controls(c);
+      silent = silent || !controls(c);
+      count = parallel ? count * count_of(c) : count + (controls(c) ? count_of(c) : 0);
       count = std::min<std::int64_t>(count, kMaxConfigurations + 1);
     }
+    if (!parallel && silent) ++count;
     if (below) count_of(s) = static_cast<int>(count);
     controls_[static_cast<std::size_t>(s)] =
         below || has_control_keys(context_.sources[static_cast<std::size_t>(s)]->keys);
   }
 
   bool collapsed(int s) const {
-    bool below = false;
     for (int c = s + 1; c < state(s).end; c = state(c).end) {
-      below = below || controls_[static_cast<std::size_t>(c)];
+      if (controls(c)) return false;
     }
-    return !below;
+    return true;
+  }
+
+  // Whether some child of a compound state says nothing.
+  bool has_silent(int s) const {
+    for (int c = s + 1; c < state(s).end; c = state(c).end) {
+      if (state(c).history < 0 && !controls(c)) return true;
+    }
+    return false;
   }
 
   void weigh(int s, int unit) {
     if (collapsed(s)) return;
-    int offset = 0;
+    const bool parallel = state(s).kind == StateKind::parallel;
+    int offset = !parallel && has_silent(s) ? 1 : 0;
     for (int c = s + 1; c < state(s).end; c = state(c).end) {
       if (state(c).history >= 0) continue;
-      if (state(s).kind == StateKind::parallel) {
+      if (parallel) {
         weigh(c, unit);
         unit *= count_of(c);
-      } else {
+      } else if (controls(c)) {
         behavior_.states[static_cast<std::size_t>(c)].control_weight = offset * unit;
         weigh(c, unit);
         offset += count_of(c);
@@ -104,12 +119,16 @@ class ControlLoader {
   void collect(int s, int id, std::vector<int>& active) const {
     active.push_back(s);
     if (collapsed(s)) return;
+    const bool parallel = state(s).kind == StateKind::parallel;
+    if (!parallel && has_silent(s) && id-- == 0) return;
     for (int c = s + 1; c < state(s).end; c = state(c).end) {
       if (state(c).history >= 0) continue;
       const int count = counts_[static_cast<std::size_t>(c)];
-      if (state(s).kind == StateKind::parallel) {
+      if (parallel) {
         collect(c, id % count, active);
         id /= count;
+      } else if (!controls(c)) {
+        continue;
       } else if (id < count) {
         collect(c, id, active);
         return;
@@ -123,12 +142,10 @@ class ControlLoader {
     ControlSpec control;
     compile_contacts(draft, control);
     compile_tasks(draft, control);
-    control.internals.first = static_cast<int>(behavior_.internals.size());
-    for (const DraftItem& item : draft.internals) {
-      if (const auto spec = compile_internal(context_, item)) behavior_.internals.push_back(*spec);
-    }
-    control.internals.count =
-        static_cast<int>(behavior_.internals.size()) - control.internals.first;
+    const auto internals = compile_internals(context_, draft, control.contacts);
+    control.internals = {static_cast<int>(behavior_.internals.size()),
+                         static_cast<int>(internals.size())};
+    behavior_.internals.insert(behavior_.internals.end(), internals.begin(), internals.end());
     compile_torque_loops(draft, control);
     return control;
   }
@@ -173,6 +190,13 @@ class ControlLoader {
       if (!spec) continue;
       specs.push_back(*spec);
       axes += spec->axes.count;
+      if (spec->frame == tasks::Frame::stance && control.contacts.empty()) {
+        const DraftKey* frame = item.find("frame");
+        context_.error(frame->node->mark, "misplaced-name",
+                       fmt::format("task '{}' is measured from the stance contacts: none is in "
+                                   "force",
+                                   item.name));
+      }
     }
     if (static_cast<int>(specs.size()) > core::kMaxTasks || axes > core::kMaxAxes) {
       context_.error(draft.tasks.front().mark, "too-many",
@@ -190,6 +214,7 @@ class ControlLoader {
   std::optional<TaskSpec> cached_task(const DraftItem& item, const Draft& draft) {
     std::vector<std::pair<const void*, int>> identity;
     for (const DraftKey& key : item.keys) identity.emplace_back(key.node, key.owner);
+    for (const DraftGains& gains : item.gains) identity.emplace_back(gains.node, gains.owner);
     for (const DraftGains& gains : draft.gains) identity.emplace_back(gains.node, gains.owner);
     const auto found = task_cache_.find(identity);
     if (found != task_cache_.end()) return found->second;
@@ -203,7 +228,7 @@ class ControlLoader {
     std::vector<const DraftItem*> by_joint(robot.joints.size(), nullptr);
     for (const DraftItem& item : draft.torque_loops) {
       const core::YamlNode& name = *item.keys.front().node;
-      const int table = find_torque_loop(name);
+      const int table = core::is_off(name) ? -1 : find_torque_loop(name);
       const int contact = robot.find_contact(item.name);
       const int group = robot.find_group(
           contact >= 0 ? robot.contacts[static_cast<std::size_t>(contact)].group : item.name);

@@ -32,9 +32,42 @@ bool same_names(const core::YamlNode& a, const core::YamlNode& b) {
                              [](const auto& x, const auto& y) { return x.scalar == y.scalar; });
 }
 
-// Lays the entries of a map by name over the items; `stack` is not empty for the stack's own.
+// Whose word is being laid: a state's, or a stack's (`stack` is not empty) that the state names.
+struct Layer {
+  int owner = 0;
+  std::string stack;
+  int index = 0;
+};
+
+std::string layer_name(const LoadContext& context, const Layer& layer) {
+  return layer.stack.empty() ? context.behavior.states[static_cast<std::size_t>(layer.owner)].path
+                             : layer.stack;
+}
+
+// The keys of one task or internal force over what it has.
+void lay_item(const LoadContext& context, DraftItem& item, const core::YamlNode& map,
+              const Layer& layer) {
+  item.owner = layer.owner;
+  for (const core::YamlEntry& key : map.entries) {
+    const auto same = [&](const DraftKey& other) { return other.key == key.key; };
+    auto found = std::find_if(item.keys.begin(), item.keys.end(), same);
+    if (found == item.keys.end())
+      found = item.keys.insert(found, DraftKey{key.key, nullptr, 0, {}});
+    found->node = &key.value;
+    found->owner = layer.owner;
+    found->mark = key.key_mark;
+    if (key.key == "gains") {
+      item.gains.push_back(
+          {&key.value, layer.owner, layer.index, true, false, layer_name(context, layer)});
+    }
+  }
+}
+
+// Lays the entries of a map by name over the items.
 void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::YamlNode& map,
-              int owner, const std::string& stack, const char* what) {
+              const Layer& layer, const char* what) {
+  const int owner = layer.owner;
+  const std::string& stack = layer.stack;
   if (!core::expect_map(map, fmt::format("{}s by name", what), context.diagnostics)) return;
   for (const core::YamlEntry& entry : map.entries) {
     auto item = std::find_if(items.begin(), items.end(),
@@ -65,24 +98,12 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
       items.push_back({entry.key, entry.key_mark, owner, {}, {}});
       item = items.end() - 1;
     }
-    item->owner = owner;
-    for (const core::YamlEntry& key : entry.value.entries) {
-      const auto same = [&](const DraftKey& other) { return other.key == key.key; };
-      auto found = std::find_if(item->keys.begin(), item->keys.end(), same);
-      if (found == item->keys.end())
-        found = item->keys.insert(found, DraftKey{key.key, nullptr, 0, {}});
-      found->node = &key.value;
-      found->owner = owner;
-      found->mark = key.key_mark;
-      if (key.key == "gains") {
-        item->gains_owner =
-            stack.empty() ? context.behavior.states[static_cast<std::size_t>(owner)].path : stack;
-      }
-    }
+    lay_item(context, *item, entry.value, layer);
   }
 }
 
-// Items of a stack have no owner: what states say goes over them.
+// Tables by foot or group; `off` leaves the group's actuators as they are. Items of a stack have no
+// owner: what states say goes over them.
 void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& map, int owner) {
   for (const core::YamlEntry& entry : map.entries) {
     auto item = std::find_if(draft.torque_loops.begin(), draft.torque_loops.end(),
@@ -101,9 +122,35 @@ void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& 
   }
 }
 
+// The tasks that a table of gains, or a state's own, speaks of.
+const core::YamlNode* gains_by_task(const LoadContext& context, const core::YamlNode& gains) {
+  if (!gains.is_scalar()) return &gains;
+  const core::YamlNode* section = context.section("gains");
+  return section == nullptr ? nullptr : section->find(gains.scalar);
+}
+
+// Two regions that both name gains for a task say it twice.
+void lay_gains(LoadContext& context, Draft& draft, const core::YamlNode& gains,
+               const Layer& layer) {
+  const core::YamlNode* mine = gains_by_task(context, gains);
+  for (const DraftGains& other : draft.gains) {
+    if (other.of_stack || mine == nullptr || !parallel(context, other.owner, layer.owner)) continue;
+    const core::YamlNode* theirs = gains_by_task(context, *other.node);
+    for (const core::YamlEntry& entry : mine->entries) {
+      if (theirs == nullptr || theirs->find(entry.key) == nullptr) continue;
+      report_clash(context, gains.is_scalar() ? gains.mark : entry.key_mark,
+                   fmt::format("gains of '{}'", entry.key), other.owner, layer.owner);
+      break;
+    }
+  }
+  draft.gains.push_back(
+      {&gains, layer.owner, layer.index, false, !layer.stack.empty(), layer_name(context, layer)});
+}
+
 // What a stack and a state have in common.
 void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, int owner,
               const std::string& stack) {
+  const Layer layer = {owner, stack, draft.layers++};
   if (const auto* contacts = keys.find("contacts")) {
     if (draft.contacts != nullptr && stack.empty() && !same_names(*draft.contacts, *contacts) &&
         parallel(context, draft.contacts_owner, owner)) {
@@ -113,12 +160,12 @@ void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, in
     draft.contacts_owner = owner;
   }
   if (const auto* tasks = keys.find("tasks")) {
-    lay_over(context, draft.tasks, *tasks, owner, stack, "task");
+    lay_over(context, draft.tasks, *tasks, layer, "task");
   }
   if (const auto* internal = keys.find("internal")) {
-    lay_over(context, draft.internals, *internal, owner, stack, "internal force");
+    lay_over(context, draft.internals, *internal, layer, "internal force");
   }
-  if (const auto* gains = keys.find("gains")) draft.gains.push_back({gains, owner});
+  if (const auto* gains = keys.find("gains")) lay_gains(context, draft, *gains, layer);
   if (const auto* loops = keys.find("torque_loop")) {
     if (core::expect_map(*loops, "tables by foot or group", context.diagnostics)) {
       lay_torque_loops(context, draft, *loops, owner);

@@ -18,19 +18,24 @@ struct DraftKey {
   core::Mark mark{};  // of the key itself
 };
 
-struct DraftItem {
-  std::string name;
-  core::Mark mark;
-  int owner = 0;               // state whose word is the last
-  std::string gains_owner;     // stack or state path that names gains written in place
-  std::vector<DraftKey> keys;  // of the map, in order
-  const DraftKey* find(std::string_view key) const;
-};
-
-// A gain table in force (by name), or gains by task that a state gives.
+// A layer of gains: a table by name, gains by task that a state gives, or (`of_task`) those written
+// in a task. Layers grow from the stack inwards; a task's own go over its layer's table.
 struct DraftGains {
   const core::YamlNode* node = nullptr;
   int owner = 0;
+  int layer = 0;
+  bool of_task = false;
+  bool of_stack = false;
+  std::string name;  // of the stack or state, for gains written in place: gains.NAME.TASK
+};
+
+struct DraftItem {
+  std::string name;
+  core::Mark mark;
+  int owner = 0;                  // state whose word is the last
+  std::vector<DraftKey> keys;     // of the map, in order
+  std::vector<DraftGains> gains;  // written in it, outer first
+  const DraftKey* find(std::string_view key) const;
 };
 
 struct Draft {
@@ -39,7 +44,8 @@ struct Draft {
   int contacts_owner = 0;
   std::vector<DraftItem> tasks;
   std::vector<DraftItem> internals;
-  std::vector<DraftGains> gains;        // outer first
+  std::vector<DraftGains> gains;  // outer first
+  int layers = 0;
   std::vector<DraftItem> torque_loops;  // name: foot or group; one key `table`
   const core::YamlNode* transition = nullptr;
   int transition_owner = -1;

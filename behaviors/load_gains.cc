@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
 
 #include "behaviors/language.h"
 #include "core/glob.h"
@@ -11,7 +11,12 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr std::array<const char*, 3> kGains = {"kp", "ki", "kd"};
+// The axes of the task that uses an entry first.
+struct GainAxes {
+  std::vector<std::string> names;  // in the task's order
+  bool joints = false;
+};
+
 constexpr std::array<core::Dimension, 3> kDimensions = {core::kRateSquared,
                                                         core::Dimension{0, 0, -3}, core::kRate};
 
@@ -19,23 +24,30 @@ void load_ranges(LoadContext& context, const core::YamlNode& ranges) {
   if (!core::expect_map(ranges, "ranges of kp, ki and kd", context.diagnostics)) return;
   core::check_keys(ranges, kGainRangesKeys, context.diagnostics);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (const auto* node = ranges.find(kGains[k])) {
+    if (const auto* node = ranges.find(kGainNames[k])) {
       context.gain_ranges[k] = core::read_range(*node, kDimensions[k], context.diagnostics);
+      if (context.gain_ranges[k]) context.behavior.gain_limits[k] = *context.gain_ranges[k];
     }
   }
 }
 
+// Whether some part of a value is a parameter, an expression or a signal.
+bool is_computed(const core::YamlNode& node) {
+  if (node.is_sequence()) return std::any_of(node.items.begin(), node.items.end(), is_computed);
+  if (node.is_map()) {
+    return std::any_of(node.entries.begin(), node.entries.end(),
+                       [](const core::YamlEntry& entry) { return is_computed(entry.value); });
+  }
+  if (core::is_reference(node) || core::is_expression(node)) return true;
+  const char first = node.scalar.empty() ? '0' : node.scalar.front();
+  return (first >= 'a' && first <= 'z') && node.scalar.find('.') != std::string::npos;
+}
+
 // One value an axis: a number for all, a list, or a map by axis (joints: with globs).
 std::optional<std::vector<double>> read_values(LoadContext& context, const core::YamlNode& node,
-                                               core::Dimension dimension, const GainUse& use) {
-  const std::size_t size = std::max<std::size_t>(use.axes.size(), 1);
-  if (core::is_reference(node) || core::is_expression(node)) {
-    context.error(node.mark, "not-available",
-                  "a gain is a number: parameters and expressions here are not available in this "
-                  "version");
-    return std::nullopt;
-  }
-  if (node.is_sequence() && use.axes.empty()) {
+                                               core::Dimension dimension, const GainAxes& use) {
+  const std::size_t size = std::max<std::size_t>(use.names.size(), 1);
+  if (node.is_sequence() && use.names.empty()) {
     std::vector<double> values;
     for (const core::YamlNode& item : node.items) {
       values.push_back(core::read_quantity(item, dimension, context.diagnostics).value_or(0.0));
@@ -47,17 +59,17 @@ std::optional<std::vector<double>> read_values(LoadContext& context, const core:
       const auto value = core::read_quantity(node, dimension, context.diagnostics);
       return value ? std::optional(std::vector<double>(size, *value)) : std::nullopt;
     }
-    return core::read_vector(node, dimension, use.axes, context.diagnostics);
+    return core::read_vector(node, dimension, use.names, context.diagnostics);
   }
   std::vector<double> values(size, 0.0);
   const int before = context.diagnostics.error_count();
   const auto entries =
-      core::match_names(node, use.axes, use.joints ? "joint" : "axis", context.diagnostics);
+      core::match_names(node, use.names, use.joints ? "joint" : "axis", context.diagnostics);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     if (entries[k] == nullptr) {
       if (!use.joints && context.diagnostics.error_count() == before) {
         context.error(node.mark, "missing-key",
-                      fmt::format("no value for '{}' (0 if it is meant)", use.axes[k]));
+                      fmt::format("no value for '{}' (0 if it is meant)", use.names[k]));
       }
       continue;
     }
@@ -85,17 +97,19 @@ void check_values(LoadContext& context, const core::YamlNode& node, const Parame
   }
 }
 
-void make_slots(LoadContext& context, GainEntry& entry, const GainUse& use) {
+void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
   Behavior& behavior = context.behavior;
   entry.made = true;
-  entry.axes = use.axes;
+  entry.axes = use.names;
   for (std::size_t k = 0; k < 3; ++k) {
-    const core::YamlNode* node = entry.node->find(kGains[k]);
+    const core::YamlNode* node = entry.node->find(kGainNames[k]);
     if (node == nullptr) continue;
+    entry.computed[k] = is_computed(*node);
+    if (entry.computed[k]) continue;
     const auto values = read_values(context, *node, kDimensions[k], use);
     if (!values || values->empty()) continue;
     ParameterInfo info;
-    info.name = entry.name + "." + kGains[k];
+    info.name = entry.name + "." + kGainNames[k];
     info.slot = static_cast<int>(behavior.values.size());
     info.size = static_cast<int>(values->size());
     info.dimension = kDimensions[k];
@@ -110,6 +124,27 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainUse& use) {
     entry.sizes[k] = info.size;
     behavior.parameters.push_back(info);
     behavior.values.insert(behavior.values.end(), values->begin(), values->end());
+  }
+}
+
+// A gain that is an expression, axis by axis; checked here where it is constant.
+void compute_gain(LoadContext& context, const core::YamlNode& node, std::size_t gain,
+                  AxesScope axes, std::vector<AxisSpec>& out) {
+  axes.dimensions.assign(axes.names.size(), kDimensions[gain]);
+  const std::vector<int> values = compile_axes(context, node, axes, true);
+  const auto& limits = context.behavior.gain_limits[gain];
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].computed[gain] = values[i];
+    const auto value = context.constant_value(values[i]);
+    if (!value || (*value >= limits[0] && *value <= limits[1])) continue;
+    const core::YamlNode& place = node.is_sequence() ? node.items[i] : node;
+    context.error(
+        place.mark, "out-of-range",
+        fmt::format("{} is {}: a gain is at least {}{}", core::describe(place), *value, limits[0],
+                    context.gain_ranges[gain]
+                        ? fmt::format(" and at most {} (gains.ranges)", limits[1])
+                        : ""));
+    return;
   }
 }
 
@@ -185,44 +220,41 @@ GainEntry* inline_gains(LoadContext& context, const std::string& owner, const st
   return &entry;
 }
 
-void use_gains(LoadContext& context, GainEntry& entry, const GainUse& use,
-               std::vector<AxisSpec>& axes) {
-  if (!entry.made) make_slots(context, entry, use);
-  const std::array<int AxisSpec::*, 3> members = {&AxisSpec::kp, &AxisSpec::ki, &AxisSpec::kd};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const core::YamlNode* node = entry.node->find(kGains[k]);
-    if (node == nullptr || entry.slots[k] < 0) continue;
-    const bool same = entry.axes == use.axes;
-    if (!node->is_scalar() && !same) {
-      context.error(
-          node->mark, "size",
-          fmt::format("{} serves a task with other axes too: write one number", entry.name));
-    }
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      const int offset = std::min(static_cast<int>(i), entry.sizes[k] - 1);
-      axes[i].*members[k] = entry.slots[k] + offset;
-    }
+void use_gain(LoadContext& context, const GainSource& source, std::size_t gain,
+              const AxesScope& axes, std::vector<AxisSpec>& out) {
+  GainEntry& entry = *source.entry;
+  if (!entry.made) make_slots(context, entry, {axes.names, axes.joints});
+  const core::YamlNode& node = *entry.node->find(kGainNames[gain]);
+  if (entry.computed[gain]) {
+    compute_gain(context, *source.node->find(kGainNames[gain]), gain,
+                 {axes.names, axes.positions, {}, source.owner, axes.joints}, out);
+    return;
+  }
+  if (entry.slots[gain] < 0) return;
+  if (!node.is_scalar() && entry.axes != axes.names) {
+    context.error(
+        node.mark, "size",
+        fmt::format("{} serves a task with other axes too: write one number", entry.name));
+  }
+  constexpr std::array<int AxisSpec::*, 3> kMembers = {&AxisSpec::kp, &AxisSpec::ki, &AxisSpec::kd};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const int offset = std::min(static_cast<int>(i), entry.sizes[gain] - 1);
+    out[i].*kMembers[gain] = entry.slots[gain] + offset;
   }
 }
 
 void warn_incomplete_gains(LoadContext& context) {
-  for (const auto& [name, entry] : context.gain_entries) {
-    const core::YamlNode& node = *entry.node;
-    const bool p = node.find("kp") != nullptr;
-    if (node.find("ki") != nullptr && !p) {
-      context.absence(node.mark, "incomplete-gains",
-                      "ki without kp cannot be stable: is a kp missing?");
-    } else if (p && node.find("kd") == nullptr) {
-      context.absence(node.mark, "incomplete-gains",
-                      "kp without kd never comes to rest: add a kd (`kd: 0` if it is meant)");
-    }
+  for (const auto& [mark, text] : context.incomplete_gains) {
+    context.absence(mark, "incomplete-gains", text);
   }
 }
 
 void make_unused_gains(LoadContext& context) {
   for (auto& [name, entry] : context.gain_entries) {
     if (entry.made) continue;
-    context.absence(entry.node->mark, "unused", fmt::format("no task uses {}", name));
+    if (!entry.overlaid) {
+      context.absence(entry.node->mark, "unused", fmt::format("no task uses {}", name));
+    }
     make_slots(context, entry, {});
   }
 }

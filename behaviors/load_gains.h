@@ -1,17 +1,21 @@
 // Gains of a task, from a table or written in it. Load time only.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
-#include "behaviors/load_context.h"
+#include "behaviors/load_axes.h"
 
 namespace footfall::behaviors {
 
-// Who uses a gain table's entry.
-struct GainUse {
-  std::vector<std::string> axes;  // names, in the task's order
-  bool joints = false;
+inline constexpr std::array<const char*, 3> kGainNames = {"kp", "ki", "kd"};
+
+// An entry in force for a task, and the state whose word it is.
+struct GainSource {
+  GainEntry* entry = nullptr;
+  const core::YamlNode* node = nullptr;  // its words, with that state's arguments put in
+  int owner = 0;
 };
 
 // Entry of a table for a task, nullptr if there is none.
@@ -21,10 +25,11 @@ bool require_gain_table(LoadContext& context, const core::YamlNode& name);
 // Gains written in a task: `gains.OWNER.TASK`.
 GainEntry* inline_gains(LoadContext& context, const std::string& owner, const std::string& task,
                         const core::YamlNode& node);
-// Slots of the entry into the axes; made at the first use, when the number of axes is known.
-void use_gains(LoadContext& context, GainEntry& entry, const GainUse& use,
-               std::vector<AxisSpec>& axes);
-// Warns about kp without kd, and ki without kp.
+// One of kGainNames into the axes: slots, made at the entry's first use, when the number of axes is
+// known; or, where it is an expression, that.
+void use_gain(LoadContext& context, const GainSource& source, std::size_t gain,
+              const AxesScope& axes, std::vector<AxisSpec>& out);
+// Warns of what tasks miss in their gains, if all else is well.
 void warn_incomplete_gains(LoadContext& context);
 // Checks what no task uses.
 void make_unused_gains(LoadContext& context);

@@ -13,14 +13,31 @@ namespace {
 
 using tasks::TaskType;
 
-const std::array<TaskTypeInfo, 5>& task_types() {
-  static const std::array<TaskTypeInfo, 5> types = {{
-      {"com_position", TaskType::com_position, false, false, {"x", "y", "z"}},
-      {"body_orientation", TaskType::body_orientation, true, false, {"roll", "pitch", "yaw"}},
-      {"point_position", TaskType::point_position, false, false, {"x", "y", "z"}},
-      {"joint_posture", TaskType::joint_posture, true, true, {}},
-      {"joint_damping", TaskType::joint_damping, true, true, {}},
-  }};
+const std::vector<TaskTypeInfo>& task_types() {
+  const std::vector<std::string> xyz = {"x", "y", "z"};
+  const std::vector<std::string> rpy = {"roll", "pitch", "yaw"};
+  const std::vector<std::string> places = {"world", "stance"};
+  const std::vector<std::string> headings = {"heading", "world"};
+  static const std::vector<TaskTypeInfo> types = {
+      {"com_position", TaskType::com_position, false, false, xyz, places},
+      {"body_orientation", TaskType::body_orientation, false, false, rpy, headings},
+      {"point_position", TaskType::point_position, false, true, xyz, places},
+      {"frame_orientation", TaskType::frame_orientation, false, true, rpy, headings},
+      {"frame_pose",
+       TaskType::frame_pose,
+       false,
+       true,
+       {"x", "y", "z", "roll", "pitch", "yaw"},
+       places},
+      {"joint_posture", TaskType::joint_posture, true, false, {}, {}},
+      {"joint_damping", TaskType::joint_damping, true, false, {}, {}},
+      {"centroidal_angular_momentum",
+       TaskType::centroidal_angular_momentum,
+       false,
+       false,
+       xyz,
+       {"world", "heading"}},
+  };
   return types;
 }
 
@@ -36,7 +53,7 @@ void add_task(LoadContext& context, const core::YamlEntry& entry) {
   auto task = std::find_if(tasks.begin(), tasks.end(),
                            [&](const TaskName& other) { return other.name == entry.key; });
   if (task == tasks.end()) {
-    tasks.push_back({entry.key, {}, type->angular});
+    tasks.push_back({entry.key, {}, {}, type->type == TaskType::centroidal_angular_momentum});
     context.task_type_of_name.push_back(type->name);
     task = tasks.end() - 1;
   }
@@ -51,6 +68,7 @@ void add_task(LoadContext& context, const core::YamlEntry& entry) {
     const std::string& name = names[static_cast<std::size_t>(axis)];
     if (std::find(task->axes.begin(), task->axes.end(), name) == task->axes.end()) {
       task->axes.push_back(name);
+      task->dimensions.push_back(type->position(axis));
     }
   }
 }
@@ -71,6 +89,30 @@ void add_all(LoadContext& context, const core::YamlNode& keys) {
 
 }  // namespace
 
+core::Dimension TaskTypeInfo::position(int axis) const {
+  switch (type) {
+    case TaskType::com_position:
+    case TaskType::point_position:
+      return core::kLength;
+    case TaskType::frame_pose:
+      return axis < 3 ? core::kLength : core::kNone;
+    case TaskType::centroidal_angular_momentum:
+      return core::kAngularMomentum;
+    case TaskType::body_orientation:
+    case TaskType::frame_orientation:
+    case TaskType::joint_posture:
+    case TaskType::joint_damping:
+      break;
+  }
+  return core::kNone;
+}
+
+// Momentum is a rate already: what is commanded is its first derivative.
+core::Dimension TaskTypeInfo::acceleration(int axis) const {
+  const bool momentum = type == TaskType::centroidal_angular_momentum;
+  return position(axis) / (momentum ? core::kTime : core::kTime * core::kTime);
+}
+
 const TaskTypeInfo* find_task_type(std::string_view name) {
   for (const TaskTypeInfo& type : task_types()) {
     if (type.name == name) return &type;
@@ -87,12 +129,6 @@ const TaskTypeInfo& task_type_info(TaskType type) {
 const TaskTypeInfo* require_task_type(const core::YamlNode& node, core::Diagnostics& diagnostics) {
   if (!core::expect_scalar(node, "a type of task", diagnostics)) return nullptr;
   if (const TaskTypeInfo* type = find_task_type(node.scalar)) return type;
-  for (const char* later : {"frame_orientation", "frame_pose", "centroidal_angular_momentum"}) {
-    if (node.scalar != later) continue;
-    diagnostics.error(node.mark, "not-available",
-                      fmt::format("task type '{}' is not available in this version", later));
-    return nullptr;
-  }
   std::vector<std::string> names;
   for (const TaskTypeInfo& type : task_types()) names.emplace_back(type.name);
   diagnostics.error(node.mark, "unknown-task-type",

@@ -14,13 +14,16 @@ namespace footfall::behaviors {
 struct TaskTypeInfo {
   std::string_view name;
   tasks::TaskType type;
-  bool angular = true;
-  bool joints = false;            // its axes are the robot's joints
-  std::vector<std::string> axes;  // in the order of AxisCommand::axis; empty for joints
-  core::Dimension position() const { return angular ? core::kNone : core::kLength; }
+  bool joints = false;              // its axes are the robot's joints
+  bool pointed = false;             // of a `point`
+  std::vector<std::string> axes;    // in the order of AxisCommand::axis; empty for joints
+  std::vector<std::string> frames;  // that it may be given in, the usual one first
+  // Of an axis: what it measures, and what it is told to do.
+  core::Dimension position(int axis) const;
+  core::Dimension acceleration(int axis) const;
 };
 
-// nullptr for a type that is unknown or not available in this version.
+// nullptr for a type that is unknown.
 const TaskTypeInfo* find_task_type(std::string_view name);
 const TaskTypeInfo& task_type_info(tasks::TaskType type);
 // The same, with an error at the node.

@@ -54,80 +54,151 @@ core::Mark axis_mark(const DraftItem& item, const DraftKey* axes, std::size_t k,
   return listed ? axes->node->items[k].mark : axes->node->mark;
 }
 
-// Gains written in the task, else those a state gives, innermost first, else the stack's table.
-GainEntry* choose_gains(LoadContext& context, const DraftItem& item, const Draft& draft) {
-  if (const DraftKey* own = item.find("gains")) {
-    if (own->node->is_map()) return inline_gains(context, item.gains_owner, item.name, *own->node);
-    if (!own->node->is_scalar()) {
-      core::report_expected(*own->node, "gains", context.diagnostics);
-      return nullptr;
+// The gains of a task from every layer that names some, outermost first.
+std::vector<GainSource> gain_sources(LoadContext& context, const DraftItem& item,
+                                     const Draft& draft) {
+  std::vector<DraftGains> layers = draft.gains;
+  layers.insert(layers.end(), item.gains.begin(), item.gains.end());
+  std::stable_sort(layers.begin(), layers.end(),
+                   [](const auto& a, const auto& b) { return a.layer < b.layer; });
+  std::vector<GainSource> sources;
+  for (const DraftGains& gains : layers) {
+    GainEntry* entry = nullptr;
+    const core::YamlNode* own = nullptr;
+    if (gains.node->is_map()) {
+      own = gains.of_task ? gains.node : gains.node->find(item.name);
+      if (own != nullptr) entry = inline_gains(context, gains.name, item.name, *own);
+    } else if (!gains.node->is_scalar()) {
+      core::report_expected(*gains.node, "gains", context.diagnostics);
+    } else if (require_gain_table(context, *gains.node)) {
+      entry = find_gains(context, gains.node->scalar, item.name);
     }
-    if (!require_gain_table(context, *own->node)) return nullptr;
-    if (GainEntry* entry = find_gains(context, own->node->scalar, item.name)) return entry;
+    if (entry == nullptr) continue;
+    entry->overlaid = true;
+    sources.push_back({entry, own != nullptr ? own : entry->node, gains.owner});
   }
+  return sources;
+}
+
+void report_no_gains(LoadContext& context, const DraftItem& item, const Draft& draft) {
   std::string tables;
   for (auto gains = draft.gains.rbegin(); gains != draft.gains.rend(); ++gains) {
-    if (gains->node->is_map()) {
-      if (const core::YamlNode* entry = gains->node->find(item.name)) {
-        const auto& path = context.behavior.states[static_cast<std::size_t>(gains->owner)].path;
-        return inline_gains(context, path, item.name, *entry);
-      }
-      continue;
-    }
-    if (!require_gain_table(context, *gains->node)) return nullptr;
-    if (GainEntry* entry = find_gains(context, gains->node->scalar, item.name)) return entry;
+    if (!gains->node->is_scalar()) continue;
+    if (!require_gain_table(context, *gains->node)) return;
     tables += fmt::format("{}'{}'", tables.empty() ? "" : " and ", gains->node->scalar);
   }
   context.error(item.mark, "no-gains",
                 tables.empty() ? fmt::format("task '{}' has no gains", item.name)
                                : fmt::format("task '{}' has no gains: none in it, none in table {}",
                                              item.name, tables));
-  return nullptr;
 }
 
-void compile_gains(LoadContext& context, const DraftItem& item, const Draft& draft,
-                   const TaskTypeInfo& type, const std::vector<std::string>& axes,
-                   std::vector<AxisSpec>& out) {
-  GainEntry* entry = choose_gains(context, item, draft);
-  if (entry == nullptr) return;
-  if (type.type == TaskType::joint_damping) {
-    for (const char* key : {"kp", "ki"}) {
-      if (const auto* node = entry->node->find(key)) {
-        context.error(node->mark, "misplaced-key",
-                      fmt::format("joint_damping has kd only, no {}", key));
-      }
+// kp without kd, and ki without kp, in all layers together.
+void note_incomplete_gains(LoadContext& context, const std::vector<GainSource>& sources) {
+  const auto node_of = [&](const char* gain) -> const core::YamlNode* {
+    for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
+      if (source->entry->node->find(gain) != nullptr) return source->entry->node;
     }
+    return nullptr;
+  };
+  const core::YamlNode* p = node_of("kp");
+  if (const core::YamlNode* i = node_of("ki"); i != nullptr && p == nullptr) {
+    context.incomplete_gains.emplace_back(i->mark,
+                                          "ki without kp cannot be stable: is a kp missing?");
+  } else if (p != nullptr && node_of("kd") == nullptr) {
+    context.incomplete_gains.emplace_back(
+        p->mark, "kp without kd never comes to rest: add a kd (`kd: 0` if it is meant)");
   }
-  use_gains(context, *entry, {axes, type.joints}, out);
 }
 
-void compile_frame(LoadContext& context, const DraftItem& item, TaskSpec& spec) {
-  const bool orientation = spec.type == TaskType::body_orientation;
-  spec.frame = orientation ? tasks::Frame::heading : tasks::Frame::world;
+// kp, ki and kd, each from the innermost layer that names it.
+void compile_gains(LoadContext& context, const DraftItem& item, const Draft& draft,
+                   const TaskTypeInfo& type, const AxesScope& axes, std::vector<AxisSpec>& out) {
+  const int before = context.diagnostics.error_count();
+  const std::vector<GainSource> sources = gain_sources(context, item, draft);
+  if (sources.empty()) {
+    if (context.diagnostics.error_count() == before) report_no_gains(context, item, draft);
+    return;
+  }
+  note_incomplete_gains(context, sources);
+  for (std::size_t k = 0; k < kGainNames.size(); ++k) {
+    const auto source = std::find_if(sources.rbegin(), sources.rend(), [&](const auto& s) {
+      return s.entry->node->find(kGainNames[k]) != nullptr;
+    });
+    if (source == sources.rend()) continue;
+    const core::Mark mark = source->entry->node->find(kGainNames[k])->mark;
+    if (type.type == TaskType::joint_damping && k < 2) {
+      context.error(mark, "misplaced-key",
+                    fmt::format("joint_damping has kd only, no {}", kGainNames[k]));
+    } else if (type.type == TaskType::centroidal_angular_momentum && k == 1) {
+      context.error(mark, "misplaced-key",
+                    "an angular momentum has kd (on its error) and kp (on that error's integral), "
+                    "no ki");
+    }
+    use_gain(context, *source, k, axes, out);
+  }
+}
+
+void compile_frame(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type,
+                   const std::vector<int>& axes, TaskSpec& spec) {
+  if (type.frames.empty()) return;
+  const auto frame_of = [](std::string_view name) {
+    return name == "world"    ? tasks::Frame::world
+           : name == "stance" ? tasks::Frame::stance
+                              : tasks::Frame::heading;
+  };
+  spec.frame = frame_of(type.frames.front());
   const DraftKey* key = item.find("frame");
   if (key == nullptr) return;
-  const std::string expected = orientation ? "heading" : "world";
-  if (key->node->scalar == expected) return;
-  const auto choice = core::read_choice(*key->node, kFrames, context.diagnostics, "a frame");
-  if (choice) {
-    context.error(key->node->mark, "not-available",
-                  fmt::format("frame '{}' of a {} is not available in this version (expected {})",
-                              key->node->scalar, item.find("type")->node->scalar, expected));
+  if (std::find(type.frames.begin(), type.frames.end(), key->node->scalar) == type.frames.end()) {
+    if (core::read_choice(*key->node, kFrames, context.diagnostics, "a frame")) {
+      context.error(key->node->mark, "misplaced-name",
+                    fmt::format("a {} has the frame {}, got {}", type.name,
+                                fmt::join(type.frames, " or "), core::describe(*key->node)));
+    }
+    return;
+  }
+  spec.frame = frame_of(key->node->scalar);
+  const bool turns = type.axes.front() == "roll";
+  const auto has = [&](int axis) {
+    return std::find(axes.begin(), axes.end(), axis) != axes.end();
+  };
+  if (turns && spec.frame == tasks::Frame::world && has(0) != has(1)) {
+    context.error(key->node->mark, "misplaced-name",
+                  "about the world's axes roll and pitch go together: one alone means nothing at "
+                  "another yaw (take `frame: heading`)");
   }
 }
 
-int compile_limit(LoadContext& context, const DraftItem& item, const char* name,
-                  core::Dimension dimension) {
+// A value an axis that must not be negative.
+void compile_limits(LoadContext& context, const DraftItem& item, const char* name, AxesScope axes,
+                    int AxisSpec::*member, std::vector<AxisSpec>& out) {
   const DraftKey* key = item.find(name);
-  if (key == nullptr) return -1;
-  ValueScope scope;
-  scope.state = key->owner;
-  const int expression = context.compile_value(*key->node, dimension, scope);
-  const auto value = context.constant_value(expression);
-  if (value && *value < 0.0) {
-    context.error(key->node->mark, "out-of-range", fmt::format("{} cannot be negative", name));
+  if (key == nullptr) return;
+  axes.owner = key->owner;
+  const std::vector<int> values = compile_axes(context, *key->node, axes, true);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].*member = values[k];
+    const auto value = context.constant_value(values[k]);
+    if (!value || *value >= 0.0) continue;
+    const bool listed = key->node->is_sequence();
+    context.error(listed ? key->node->items[k].mark : key->node->mark, "out-of-range",
+                  fmt::format("{} cannot be negative", name));
+    return;
   }
-  return expression;
+}
+
+// The integral is what ki acts on; of an angular momentum, kp.
+void warn_idle_limit(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type,
+                     const std::vector<AxisSpec>& specs) {
+  const DraftKey* limit = item.find("integral_limit");
+  const bool momentum = type.type == TaskType::centroidal_angular_momentum;
+  const bool integrates = std::any_of(specs.begin(), specs.end(), [&](const AxisSpec& axis) {
+    return momentum ? axis.kp >= 0 || axis.computed[0] >= 0 : axis.ki >= 0 || axis.computed[1] >= 0;
+  });
+  if (limit == nullptr || integrates) return;
+  context.warning(limit->node->mark, "no-effect",
+                  fmt::format("`integral_limit` without {} has no effect", momentum ? "kp" : "ki"));
 }
 
 void check_task_keys(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type) {
@@ -143,6 +214,20 @@ void check_task_keys(LoadContext& context, const DraftItem& item, const TaskType
 }
 
 }  // namespace
+
+int compile_limit(LoadContext& context, const DraftItem& item, const char* name,
+                  core::Dimension dimension) {
+  const DraftKey* key = item.find(name);
+  if (key == nullptr) return -1;
+  ValueScope scope;
+  scope.state = key->owner;
+  const int expression = context.compile_value(*key->node, dimension, scope);
+  const auto value = context.constant_value(expression);
+  if (value && *value < 0.0) {
+    context.error(key->node->mark, "out-of-range", fmt::format("{} cannot be negative", name));
+  }
+  return expression;
+}
 
 std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item,
                                      const Draft& draft) {
@@ -163,7 +248,7 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
   TaskSpec spec;
   spec.type = type->type;
   spec.mark = item.mark;
-  if (type->type == TaskType::point_position) {
+  if (type->pointed) {
     const DraftKey* point = item.find("point");
     if (point == nullptr) {
       context.error(item.mark, "missing-key", fmt::format("task '{}' needs a `point`", item.name));
@@ -188,76 +273,35 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
   }
   const std::vector<std::string> all = all_axes(context, *type);
   std::vector<std::string> names;
+  std::vector<core::Dimension> positions;
+  std::vector<core::Dimension> accelerations;
   std::vector<AxisSpec> specs;
   for (const int axis : axes) {
     names.push_back(all[static_cast<std::size_t>(axis)]);
+    positions.push_back(type->position(axis));
+    accelerations.push_back(type->acceleration(axis));
     specs.emplace_back();
     specs.back().axis = axis;
     specs.back().mark = axis_mark(item, axes_key, specs.size() - 1, axes.size());
   }
-  compile_frame(context, item, spec);
+  compile_frame(context, item, *type, axes, spec);
   if (const DraftKey* priority = item.find("priority")) {
     spec.priority = static_cast<int>(
         core::read_integer(*priority->node, 1, 1000, context.diagnostics).value_or(1));
   }
-  compile_gains(context, item, draft, *type, names, specs);
-  spec.weight = compile_limit(context, item, "weight", core::kNone);
-  spec.acceleration_limit = compile_limit(context, item, "acceleration_limit",
-                                          type->angular ? core::kRateSquared : core::kAcceleration);
-  spec.integral_limit =
-      compile_limit(context, item, "integral_limit", type->position() * core::kTime);
-  const bool integrates =
-      std::any_of(specs.begin(), specs.end(), [](const AxisSpec& axis) { return axis.ki >= 0; });
-  if (const DraftKey* limit = item.find("integral_limit"); limit != nullptr && !integrates) {
-    context.warning(limit->node->mark, "no-effect", "`integral_limit` without ki has no effect");
-  }
-  compile_reference(context, item, *type, names, spec, specs);
+  AxesScope scope{names, positions, positions, 0, type->joints, false};
+  compile_gains(context, item, draft, *type, scope, specs);
+  compile_reference(context, item, scope, spec, specs);
+  scope.dimensions = accelerations;
+  compile_limits(context, item, "acceleration_limit", scope, &AxisSpec::acceleration_limit, specs);
+  scope.dimensions = scaled(positions, core::kTime);
+  compile_limits(context, item, "integral_limit", scope, &AxisSpec::integral_limit, specs);
+  warn_idle_limit(context, item, *type, specs);
+  scope.dimensions.assign(positions.size(), core::kNone);
+  compile_limits(context, item, "weight", scope, &AxisSpec::weight, specs);
   spec.instance = find_instance(context, item, spec.type, spec.point);
   spec.axes = {static_cast<int>(context.behavior.axes.size()), static_cast<int>(specs.size())};
   context.behavior.axes.insert(context.behavior.axes.end(), specs.begin(), specs.end());
-  return spec;
-}
-
-std::optional<InternalSpec> compile_internal(LoadContext& context, const DraftItem& item) {
-  core::YamlNode map;
-  map.kind = core::YamlNode::Kind::map;
-  for (const DraftKey& key : item.keys) map.entries.push_back({key.key, key.mark, false, {}});
-  core::check_keys(map, kInternalKeys, context.diagnostics);
-  const DraftKey* between = item.find("between");
-  const DraftKey* reference = item.find("reference");
-  if (between == nullptr || reference == nullptr) {
-    context.error(item.mark, "missing-key",
-                  fmt::format("internal force '{}' needs `between` and `reference`", item.name));
-    return std::nullopt;
-  }
-  if (between->node->is_scalar() && between->node->scalar == "all") {
-    context.error(between->node->mark, "not-available",
-                  "'between: all' is not available in this version");
-    return std::nullopt;
-  }
-  if (!between->node->is_sequence() || between->node->items.size() != 2) {
-    core::report_expected(*between->node, "two contacts", context.diagnostics);
-    return std::nullopt;
-  }
-  InternalSpec spec;
-  spec.contact_a = context.require_contact(between->node->items[0]);
-  spec.contact_b = context.require_contact(between->node->items[1]);
-  if (spec.contact_a < 0 || spec.contact_b < 0) return std::nullopt;
-  if (spec.contact_a == spec.contact_b) {
-    context.error(between->node->items[1].mark, "same-foot",
-                  "an internal force acts between two feet, not one");
-  }
-  ValueScope scope;
-  scope.state = reference->owner;
-  spec.mark = reference->node->mark;
-  spec.reference = context.compile_value(*reference->node, core::kForce, scope);
-  spec.feedback = compile_limit(context, item, "feedback", core::kNone);
-  if (const DraftKey* convention = item.find("convention")) {
-    const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
-    if (choice && *choice == 1) spec.scale = 0.5;
-  }
-  const auto& names = context.behavior.internal_instances;
-  while (names[static_cast<std::size_t>(spec.instance)] != item.name) ++spec.instance;
   return spec;
 }
 

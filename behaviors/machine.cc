@@ -48,6 +48,10 @@ Machine::Machine(const Behavior& behavior, core::SignalTable& signals)
     : impl_(std::make_unique<Impl>(behavior, signals)) {}
 Machine::~Machine() = default;
 
+void Machine::set_surface(const model::HeightSurface& surface) {
+  impl_->control.set_surface(surface);
+}
+
 void Machine::start(const Measure&) noexcept {
   impl_->raise_contacts(false);
   impl_->planners.start();

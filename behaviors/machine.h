@@ -15,6 +15,7 @@
 #include "behaviors/statechart.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
+#include "model/height_surface.h"
 #include "tasks/active_set.h"
 
 namespace footfall::behaviors {
@@ -25,6 +26,10 @@ class Measure {
   virtual ~Measure() = default;
   // Position of one axis of a task type (m or rad); point: index into the model's points.
   virtual double position(tasks::TaskType type, int point, int axis) const noexcept = 0;
+  // Velocity of the same for positions (com_position, point_position, frame_pose's x y z).
+  virtual double velocity(tasks::TaskType, int /*point*/, int /*axis*/) const noexcept {
+    return 0.0;
+  }
 };
 
 // Asked for by an `invoke` in this tick.
@@ -53,6 +58,9 @@ class Machine {
   // behavior.layout. Both must outlive the machine.
   Machine(const Behavior& behavior, core::SignalTable& signals);
   ~Machine();
+
+  // The world's walking surface, flat unless set; before start().
+  void set_surface(const model::HeightSurface& surface);
 
   // Enters the initial configuration at tick 0; signals hold the first measurement.
   void start(const Measure& measure) noexcept;

@@ -42,7 +42,7 @@ void check_contact_types(const Behavior& behavior, const ControlSpec& control, F
     const model::ContactDescription& contact = behavior.robot.contacts[at(c)];
     if (contact.type == model::ContactType::point) continue;
     findings.add(
-        core::Severity::error, contact.type_mark, "not-available", contact.name,
+        core::Severity::error, contact.type_mark, "unsupported", contact.name,
         fmt::format("contact '{}' is of type '{}', which is not available in this version: "
                     "the control law knows points; give it several of them",
                     contact.name,

@@ -83,8 +83,8 @@ void PhysicsLaw::assemble(const std::vector<int>& contacts, const std::vector<Ta
     std::copy_n(point.jacobian.data(), 3 * n, problem.Js.data() + 3 * static_cast<int>(i) * n);
     std::copy_n(point.bias.data(), 3, problem.Js_bias.data() + 3 * i);
   }
-  const tasks::LawContext context = {&model_, &memory_, 0, behavior_.period(),
-                                     contacts.empty() ? -1 : contacts.front()};
+  const tasks::LawContext context = {
+      &model_, &memory_, 0, behavior_.period(), contacts.data(), static_cast<int>(contacts.size())};
   int count = 0;
   for (const TaskRow& row : rows) {
     tasks::TaskCommand command = command_of(*row.task);
@@ -92,8 +92,8 @@ void PhysicsLaw::assemble(const std::vector<int>& contacts, const std::vector<Ta
     tasks::AxisCommand axis;
     axis.axis = row.axis->axis;
     tasks::AxisEvaluation unused;
-    tasks::evaluate_task(command, &axis, context, problem.J.data() + count * n,
-                         problem.J_bias.data() + count, &unused);
+    tasks::task_rows(command, &axis, context, problem.J.data() + count * n,
+                     problem.J_bias.data() + count, &unused);
     problem.u[at(count)] = 0.0;
     problem.weight[at(count)] = 1.0;
     problem.level_end[at(count)] = count + 1;

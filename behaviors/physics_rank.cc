@@ -125,7 +125,7 @@ class RankCheck {
   // A weight says what is to give way where a level asks for too much; and all joints of a closed
   // chain, held or damped together, ask for nothing that contradicts itself.
   static bool is_meant(const TaskRow& row, const std::vector<TaskRow>& others) {
-    const auto weighted = [](const TaskRow& r) { return r.task->weight >= 0; };
+    const auto weighted = [](const TaskRow& r) { return r.axis->weight >= 0; };
     const auto of_joint = [](const TaskRow& r) { return r.of_joint; };
     return weighted(row) || std::any_of(others.begin(), others.end(), weighted) ||
            (row.of_joint && std::all_of(others.begin(), others.end(), of_joint));

@@ -7,6 +7,7 @@
 namespace footfall::behaviors {
 namespace {
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+constexpr std::size_t kEventsPerInvoke = 64;
 }  // namespace
 
 FootPlannerSpec spec_in_force(const PlannerInfo& planner,
@@ -27,7 +28,9 @@ PlannerCalls::PlannerCalls(const Behavior& behavior, Statechart& statechart,
       parameters_(parameters),
       calls_(behavior.invokes.size()) {
   requests_.reserve(behavior.invokes.size());
-  events_.reserve(4 * (behavior.invokes.size() + 1) * kMaxOutstanding);
+  events_.reserve((behavior.invokes.size() + 1) * kEventsPerInvoke);
+  const std::int64_t ticks_a_second = std::max<std::int64_t>(behavior.rate_mhz / 1000, 1);
+  for (Call& call : calls_) call.ring.resize(static_cast<std::size_t>(ticks_a_second) + 1);
 }
 
 void PlannerCalls::start() noexcept {
@@ -57,12 +60,9 @@ void PlannerCalls::update_call(const InvokeInfo& invoke, Call& call) noexcept {
         invoke.at >= 0 ? ticks_of(invoke.at, 1.0) : ticks_of(invoke.after, invoke.at_fraction);
     call.next_ask = delay < 0 ? -1 : statechart_.entry_tick(invoke.state) + delay;
   }
-  while (call.count > 0 && call.outstanding[0].deadline >= 0 &&
-         tick >= call.outstanding[0].deadline) {
-    const Outstanding late = call.outstanding[0];
-    std::copy(call.outstanding.begin() + 1, call.outstanding.begin() + call.count,
-              call.outstanding.begin());
-    --call.count;
+  while (call.count > 0 && call.nth(0).deadline >= 0 && tick >= call.nth(0).deadline) {
+    const Outstanding late = call.nth(0);
+    call.drop(1);
     replace_late(invoke, late);
   }
   if (call.next_ask < 0 || tick < call.next_ask) return;
@@ -75,7 +75,7 @@ void PlannerCalls::update_call(const InvokeInfo& invoke, Call& call) noexcept {
 // An exit cancels; where a late plan is to be replaced, what follows needs a plan now.
 void PlannerCalls::leave(const InvokeInfo& invoke, Call& call) noexcept {
   if (call.count > 0 && invoke.closed_form) {
-    replace_late(invoke, call.outstanding[at(call.count - 1)]);
+    replace_late(invoke, call.nth(call.count - 1));
   }
   call.active = false;
   call.count = 0;
@@ -89,12 +89,9 @@ void PlannerCalls::ask(const InvokeInfo& invoke, Call& call) noexcept {
     statechart_.report_execution_error();
     return;
   }
-  if (call.count == kMaxOutstanding) {  // the oldest has waited for longer than any planner takes
-    std::copy(call.outstanding.begin() + 1, call.outstanding.end(), call.outstanding.begin());
-    --call.count;
-  }
+  if (at(call.count) == call.ring.size()) call.drop(1);  // it has waited for a second
   const std::int64_t deadline = invoke.deadline < 0 ? -1 : ticks_of(invoke.deadline, 1.0);
-  Outstanding& request = call.outstanding[at(call.count++)];
+  Outstanding& request = call.nth(call.count++);
   request.sequence = ++sequence_;
   request.deadline = deadline < 0 ? -1 : context.tick + deadline;
   request.switch_time = static_cast<double>(context.tick) * context.period + switch_in;
@@ -106,13 +103,10 @@ bool PlannerCalls::deliver(const PlanAnswer& answer) noexcept {
     Call& call = calls_[k];
     if (!call.active || behavior_.invokes[k].planner != answer.planner) continue;
     int found = 0;
-    while (found < call.count && call.outstanding[at(found)].sequence != answer.sequence) ++found;
+    while (found < call.count && call.nth(found).sequence != answer.sequence) ++found;
     if (found == call.count) continue;
-    const double switch_time = call.outstanding[at(found)].switch_time;
-    // Older requests are answered by this one.
-    std::copy(call.outstanding.begin() + found + 1, call.outstanding.begin() + call.count,
-              call.outstanding.begin());
-    call.count -= found + 1;
+    const double switch_time = call.nth(found).switch_time;
+    call.drop(found + 1);  // older requests are answered by this one
     const PlannerInfo& planner = behavior_.planners[at(answer.planner)];
     const bool good =
         answer.ok && std::isfinite(answer.target[0] + answer.target[1] + answer.target[2]);

@@ -34,8 +34,6 @@ class PlannerCalls {
   std::vector<int>& events() noexcept { return events_; }
 
  private:
-  static constexpr int kMaxOutstanding = 16;  // requests of one invoke without an answer yet
-
   struct Outstanding {
     std::uint32_t sequence = 0;
     std::int64_t deadline = -1;  // tick, -1: none
@@ -45,8 +43,19 @@ class PlannerCalls {
     bool active = false;
     std::uint32_t serial = 0;    // of the state's entry
     std::int64_t next_ask = -1;  // tick, -1: not any more
-    int count = 0;               // of outstanding requests, oldest first
-    std::array<Outstanding, kMaxOutstanding> outstanding{};
+    // Requests without an answer yet, oldest first, in a ring: room for one a tick for a second, so
+    // that an answer always finds its request however late it is.
+    int first = 0;
+    int count = 0;
+    std::vector<Outstanding> ring;
+
+    Outstanding& nth(int k) noexcept {
+      return ring[static_cast<std::size_t>(first + k) % ring.size()];
+    }
+    void drop(int oldest) noexcept {
+      first = static_cast<int>(static_cast<std::size_t>(first + oldest) % ring.size());
+      count -= oldest;
+    }
   };
 
   void update_call(const InvokeInfo& invoke, Call& call) noexcept;

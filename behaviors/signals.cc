@@ -1,6 +1,8 @@
 // The order in which signals are registered; see signals.h.
 #include "behaviors/signals.h"
 
+#include <algorithm>
+
 namespace footfall::behaviors {
 namespace {
 
@@ -71,23 +73,28 @@ void add_robot(const model::RobotDescription& robot, core::SignalTable& table,
 
 TaskSignals add_task(const TaskName& task, core::SignalTable& table) {
   const std::string name = "task." + task.name;
-  const Dimension position = task.angular ? core::kNone : core::kLength;
-  const Dimension acceleration = task.angular ? core::kRateSquared : core::kAcceleration;
+  const bool lengths = std::find(task.dimensions.begin(), task.dimensions.end(), core::kLength) !=
+                       task.dimensions.end();
+  const Dimension norm = lengths                   ? core::kLength
+                         : task.dimensions.empty() ? core::kNone
+                                                   : task.dimensions.front();
+  const Dimension per = task.momentum ? core::kTime : core::kTime * core::kTime;
   TaskSignals signals;
   signals.axis_count = static_cast<int>(task.axes.size());
-  signals.error = table.add(name + ".error", position, "norm of the error over its axes");
-  const auto add_each = [&](const std::string& what, Dimension dimension, const std::string& doc,
+  signals.error = table.add(name + ".error", norm, "norm of the error over its axes");
+  for (const Dimension dimension : task.dimensions) signals.in_norm.push_back(dimension == norm);
+  const auto add_each = [&](const std::string& what, Dimension divisor, const std::string& doc,
                             std::vector<int>& out) {
-    for (const std::string& axis : task.axes) {
-      out.push_back(table.add(name + "." + what + "." + axis, dimension, doc));
+    for (std::size_t k = 0; k < task.axes.size(); ++k) {
+      out.push_back(
+          table.add(name + "." + what + "." + task.axes[k], task.dimensions[k] / divisor, doc));
     }
   };
-  add_each("error", position, "reference minus measured", signals.axis_error);
-  add_each("reference", position, "what it should be", signals.axis_reference);
-  add_each("measured", position, "what it is", signals.axis_measured);
-  add_each("commanded", acceleration, "commanded acceleration", signals.axis_commanded);
-  add_each("achieved", acceleration, "achieved acceleration, by the control model",
-           signals.axis_achieved);
+  add_each("error", core::kNone, "reference minus measured", signals.axis_error);
+  add_each("reference", core::kNone, "what it should be", signals.axis_reference);
+  add_each("measured", core::kNone, "what it is", signals.axis_measured);
+  add_each("commanded", per, "commanded acceleration", signals.axis_commanded);
+  add_each("achieved", per, "achieved acceleration, by the control model", signals.axis_achieved);
   signals.rank = table.add(name + ".rank", core::kNone, "rank of its priority level");
   signals.condition = table.add(name + ".condition", core::kNone, "condition of its level");
   signals.authority =

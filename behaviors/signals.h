@@ -6,13 +6,16 @@
 #include <vector>
 
 #include "core/signal_table.h"
+#include "core/units.h"
 #include "model/robot_description.h"
 
 namespace footfall::behaviors {
 
 // Indices of the rows of one task: task.NAME.*
 struct TaskSignals {
-  int error = -1;  // norm of the error over its axes
+  // Norm of the error over its axes; where lengths and angles meet (frame_pose), over the lengths.
+  int error = -1;
+  std::vector<bool> in_norm;  // by axis
   int axis_count = 0;
   std::vector<int> axis_error;      // task.NAME.error.AXIS
   std::vector<int> axis_reference;  // task.NAME.reference.AXIS
@@ -42,7 +45,8 @@ struct PlannerSignals {
 struct TaskName {
   std::string name;
   std::vector<std::string> axes;
-  bool angular = false;
+  std::vector<core::Dimension> dimensions;  // of the axes
+  bool momentum = false;                    // a rate: what is commanded is its first derivative
 };
 
 // Layout of the table. All `xyz` members are the index of x; y and z follow.

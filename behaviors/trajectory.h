@@ -4,10 +4,21 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace footfall::behaviors {
 
-enum class Shape : std::uint8_t { hold, polynomial3, polynomial5, cosine, minimum_jerk };
+enum class Shape : std::uint8_t {
+  hold,
+  polynomial3,
+  polynomial5,
+  cosine,
+  minimum_jerk,
+  // Not of one segment alone; their segment, a minimum_jerk or hold, is
+  ellipse,    // the centre's path
+  waypoints,  // unused
+  surface,    // the height above the surface
+};
 
 // Position, velocity and acceleration of one axis, SI.
 struct Motion {
@@ -35,5 +46,25 @@ struct Segment {
 Segment make_segment(Shape shape, const Motion& start, double to, double end_velocity,
                      double duration) noexcept;
 Motion sample(const Segment& segment, double t) noexcept;
+
+// A place to pass and when.
+struct Knot {
+  double time = 0.0;  // s since the start
+  double pos = 0.0;
+  double vel = 0.0;
+  double acc = 0.0;
+};
+
+// Velocity and acceleration at the knots between first and last, whose own are given, so that the
+// knots are passed smoothly: those of the cubic spline through them with these end velocities (de
+// Boor 1978, ch. IV, complete spline). Times must grow.
+void fit_knots(std::span<Knot> knots) noexcept;
+// Quintics between the knots: position, velocity and acceleration are continuous everywhere. After
+// the last its velocity is kept on. At least one knot.
+Motion sample_knots(std::span<const Knot> knots, double t) noexcept;
+
+// One axis of an ellipse that grows from nothing: g(t/ramp) radius cos(angle), g the minimum-jerk
+// step from 0 to 1. rate: of the angle, rad/s; t: s since the start.
+Motion sample_ellipse(double radius, double angle, double rate, double ramp, double t) noexcept;
 
 }  // namespace footfall::behaviors

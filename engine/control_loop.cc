@@ -24,10 +24,15 @@ std::vector<std::vector<int>> axis_columns(const behaviors::Behavior& behavior) 
     switch (task.type) {
       case tasks::TaskType::com_position:
       case tasks::TaskType::point_position:
+      case tasks::TaskType::centroidal_angular_momentum:
         names = {"x", "y", "z"};
         break;
       case tasks::TaskType::body_orientation:
+      case tasks::TaskType::frame_orientation:
         names = {"roll", "pitch", "yaw"};
+        break;
+      case tasks::TaskType::frame_pose:
+        names = {"x", "y", "z", "roll", "pitch", "yaw"};
         break;
       case tasks::TaskType::joint_posture:
       case tasks::TaskType::joint_damping:
@@ -43,6 +48,26 @@ std::vector<std::vector<int>> axis_columns(const behaviors::Behavior& behavior) 
     }
   }
   return columns;
+}
+
+// All signals of a task or internal force, by name.
+std::vector<std::vector<int>> rows_of(const behaviors::Behavior& behavior, const std::string& kind,
+                                      const std::vector<std::string>& names) {
+  std::vector<std::vector<int>> rows;
+  for (const std::string& name : names) {
+    std::vector<int>& own = rows.emplace_back();
+    const std::string prefix = kind + "." + name + ".";
+    for (int s = 0; s < behavior.signals.size(); ++s) {
+      if (behavior.signals.info(s).name.starts_with(prefix)) own.push_back(s);
+    }
+  }
+  return rows;
+}
+
+std::vector<std::string> task_names(const behaviors::Behavior& behavior) {
+  std::vector<std::string> names;
+  for (const behaviors::TaskName& task : behavior.task_names) names.push_back(task.name);
+  return names;
 }
 
 int latency_ticks(double latency, double period) {
@@ -67,9 +92,7 @@ tasks::ControllerSizes controller_sizes(const behaviors::Behavior& behavior) {
   sizes.contacts = std::max<int>(1, static_cast<int>(behavior.robot.contacts.size()));
   sizes.task_rows = 0;
   for (const behaviors::TaskInstance& task : behavior.task_instances) {
-    const bool joints =
-        task.type == tasks::TaskType::joint_posture || task.type == tasks::TaskType::joint_damping;
-    sizes.task_rows += joints ? behavior.robot.joint_count() : 3;
+    sizes.task_rows += tasks::axis_capacity(task.type, behavior.robot.joint_count());
   }
   sizes.task_rows = std::clamp(sizes.task_rows, 1, core::kMaxAxes);
   sizes.levels = std::max(1, sizes.task_instances);
@@ -91,7 +114,13 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       lockstep_(settings.lockstep),
       safety_(behavior.robot),
       measure_(model_),
-      axis_column_(axis_columns(behavior)) {}
+      axis_column_(axis_columns(behavior)),
+      task_rows_(rows_of(behavior, "task", task_names(behavior))),
+      internal_rows_(rows_of(behavior, "internal", behavior.internal_instances)),
+      task_in_force_(task_rows_.size(), 1),
+      internal_in_force_(internal_rows_.size(), 1) {
+  machine_->set_surface(settings.surface);
+}
 
 void ControlLoop::start() {
   hardware_.start();
@@ -102,6 +131,7 @@ void ControlLoop::start() {
   model_.update(estimate_);
   planners_.start();
   write_measured_signals();
+  leave_gaps();
   machine_->start(measure_);
 }
 

@@ -17,6 +17,7 @@
 #include "engine/script_link.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
+#include "model/height_surface.h"
 #include "tasks/whole_body_controller.h"
 
 namespace footfall::engine {
@@ -26,7 +27,8 @@ struct LoopSettings {
   double planner_latency = 2e-3;    // s, lock-step
   bool lockstep = true;             // the caller's clock waits for what other threads compute
   behaviors::ScriptAccess script_access;
-  std::uint64_t seed = 0;  // of the scripts' random numbers
+  std::uint64_t seed = 0;        // of the scripts' random numbers
+  model::HeightSurface surface;  // of the world, for references that follow it
 };
 
 enum class LoopState : std::uint8_t {
@@ -80,6 +82,9 @@ class ControlLoop {
     double position(tasks::TaskType type, int point, int axis) const noexcept override {
       return tasks::measured_position(model_, type, point, axis);
     }
+    double velocity(tasks::TaskType type, int point, int axis) const noexcept override {
+      return tasks::measured_velocity(model_, type, point, axis);
+    }
 
    private:
     const model::ControlModel& model_;
@@ -90,6 +95,8 @@ class ControlLoop {
   void write_measured_signals() noexcept;
   void write_control_signals() noexcept;
   void write_task_signals() noexcept;
+  void write_internal_signals() noexcept;
+  void leave_gaps() noexcept;
 
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
@@ -109,6 +116,9 @@ class ControlLoop {
   model::State estimate_;
   core::FaultCounters faults_;
   std::vector<std::vector<int>> axis_column_;  // by task name and axis: column of its signals, -1
+  // Signals of the tasks and internal forces that were in force in the last tick: NaN when they go.
+  std::vector<std::vector<int>> task_rows_, internal_rows_;  // by name: indices of their signals
+  std::vector<unsigned char> task_in_force_, internal_in_force_;
   std::array<bool, core::kFaultCount> active_{};  // faults present in the previous tick
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
   std::int64_t tick_ = 0;

@@ -68,13 +68,43 @@ void ControlLoop::write_control_signals() noexcept {
   double faults = 0.0;
   for (const std::int64_t n : faults_.count) faults += static_cast<double>(n);
   signals_[layout.faults] = faults;
-  for (int i = 0; i < control.primary.internal_count; ++i) {
-    const tasks::InternalCommand& c = control.primary.internals[at(i)];
-    const behaviors::InternalSignals& out = layout.internal[at(c.instance)];
-    signals_[out.reference] = c.reference;
-    signals_[out.measured] = result.internal_measured[at(i)];
-  }
+  leave_gaps();
+  write_internal_signals();
   write_task_signals();
+}
+
+// What is not in force has no value: a gap in the log, false in a condition.
+void ControlLoop::leave_gaps() noexcept {
+  const auto leave = [&](std::vector<unsigned char>& in_force,
+                         const std::vector<std::vector<int>>& rows) {
+    for (std::size_t k = 0; k < in_force.size(); ++k) {
+      if (in_force[k] == 0) continue;
+      in_force[k] = 0;
+      for (const int row : rows[k]) signals_[row] = std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  leave(task_in_force_, task_rows_);
+  leave(internal_in_force_, internal_rows_);
+}
+
+// In the behavior's own convention; of several pairs (`between: all`) the mean.
+void ControlLoop::write_internal_signals() noexcept {
+  const tasks::ControlSet& set = machine_->control().primary;
+  const tasks::ControllerResult& result = controller_.result();
+  for (int i = 0; i < set.internal_count; ++i) {
+    const tasks::InternalCommand& c = set.internals[at(i)];
+    const behaviors::InternalSignals& out = behavior_.layout.internal[at(c.instance)];
+    double pairs = 0.0;
+    double sum = 0.0;
+    for (int j = 0; j < set.internal_count; ++j) {
+      if (set.internals[at(j)].instance != c.instance) continue;
+      pairs += 1.0;
+      sum += result.internal_measured[at(j)];
+    }
+    signals_[out.reference] = c.reference / c.scale;
+    signals_[out.measured] = sum / pairs / c.scale;
+    internal_in_force_[at(c.instance)] = 1;
+  }
 }
 
 void ControlLoop::write_task_signals() noexcept {
@@ -87,16 +117,17 @@ void ControlLoop::write_task_signals() noexcept {
     const behaviors::TaskInstance& instance = behavior_.task_instances[at(task.instance)];
     const behaviors::TaskSignals& out = layout.task[at(instance.signals)];
     const std::vector<int>& columns = axis_column_[at(instance.signals)];
+    task_in_force_[at(instance.signals)] = 1;
     double squared = 0.0;
     for (int i = 0; i < task.axis_count; ++i) {
       const tasks::AxisCommand& command = set.axes[at(task.first_axis + i)];
       const tasks::AxisEvaluation& value = result.axes[at(task.first_axis + i)];
-      squared += value.error * value.error;
       if (task.type == tasks::TaskType::com_position) {
         signals_[layout.com_ref + command.axis] = command.ref;
       }
       const int column = columns[at(command.axis)];
       if (column < 0) continue;
+      if (out.in_norm[at(column)]) squared += value.error * value.error;
       signals_[out.axis_error[at(column)]] = value.error;
       signals_[out.axis_reference[at(column)]] = command.ref;
       signals_[out.axis_measured[at(column)]] = value.measured;

@@ -16,7 +16,11 @@ using behaviors::PlanRequest;
 
 PlannerLink::PlannerLink(const behaviors::Behavior& behavior, const model::ControlModel& model,
                          int latency_ticks)
-    : behavior_(behavior), model_(model), latency_ticks_(std::max(1, latency_ticks)) {}
+    : behavior_(behavior),
+      model_(model),
+      latency_ticks_(std::max(1, latency_ticks)),
+      pending_(std::max<std::size_t>(1, behavior.invokes.size()) *
+               (static_cast<std::size_t>(latency_ticks_) + 1)) {}
 
 // A foot belongs to the side of the base on which it stands at the start; later the feet may be
 // close together or cross, and must not change sides by that.

@@ -25,8 +25,7 @@ class PlannerLink {
                double period) noexcept;
   // Hands over the answers due at this tick.
   void deliver(std::int64_t tick, behaviors::Machine& machine) noexcept;
-  // Answers this tick's requests, to be delivered later. Requests beyond the capacity stay without
-  // an answer, as from a planner that died: their deadline reports it.
+  // Answers this tick's requests, to be delivered later.
   void take(std::int64_t tick, behaviors::Machine& machine) noexcept;
 
  private:
@@ -42,7 +41,7 @@ class PlannerLink {
   const behaviors::Behavior& behavior_;
   const model::ControlModel& model_;
   int latency_ticks_;
-  std::array<Pending, 64> pending_{};
+  std::vector<Pending> pending_;  // room for every invoke asking in every tick of the latency
   std::size_t head_ = 0, count_ = 0;
   std::array<std::array<double, 2>, core::kMaxPlanners> filtered_velocity_{};
   std::array<double, core::kMaxContacts> contact_side_{};         // +1 left, -1 right of the base

@@ -19,12 +19,13 @@ struct DataDeleter {
   void operator()(mjData* d) const { mj_deleteData(d); }
 };
 
-int require_site(const mjModel* m, const RobotDescription& robot, const std::string& site,
-                 const std::string& what) {
-  const int id = mj_name2id(m, mjOBJ_SITE, site.c_str());
+int require_object(const mjModel* m, const RobotDescription& robot, mjtObj type,
+                   const std::string& name, const std::string& what) {
+  const int id = mj_name2id(m, type, name.c_str());
   if (id < 0) {
-    throw std::runtime_error(robot.path + ": error: " + what + " names the site '" + site +
-                             "', which " + robot.model_path + " does not have");
+    throw std::runtime_error(robot.path + ": error: " + what + " names the " +
+                             (type == mjOBJ_SITE ? "site" : "body") + " '" + name + "', which " +
+                             robot.model_path + " does not have");
   }
   return id;
 }
@@ -97,6 +98,11 @@ void add_momentum(const double* inertia, const double* velocity, std::array<doub
   sum[5] += I[4] * w[0] + I[5] * w[1] + I[2] * w[2] + mc[0] * v[1] - mc[1] * v[0];
 }
 
+// R = Rz(yaw) Ry(pitch) Rx(roll).
+Vector3 rpy_of(const std::array<double, 9>& R) noexcept {
+  return {std::atan2(R[7], R[8]), std::asin(std::clamp(-R[6], -1.0, 1.0)), std::atan2(R[3], R[0])};
+}
+
 }  // namespace
 
 struct ControlModel::Mujoco {
@@ -120,20 +126,12 @@ ControlModel::ControlModel(const RobotDescription& robot, const ModelDeviation& 
   }
   mass_ = m->body_subtreemass[base_body_];
   contact_count_ = static_cast<int>(robot.contacts.size());
-  const auto add_anchor = [&](int site, double radius) {
-    const double* p = m->site_pos + 3 * site;
-    anchors_.push_back({m->site_bodyid[site], {p[0], p[1], p[2]}, radius});
-  };
-  for (const ContactDescription& c : robot.contacts) {
-    add_anchor(require_site(m, robot, c.site, "contact '" + c.name + "'"), c.radius);
-  }
-  for (const PointDescription& p : robot.points) {
-    add_anchor(require_site(m, robot, p.site, "point '" + p.name + "'"), 0.0);
-  }
-  points_.resize(anchors_.size());
-  fresh_.assign(anchors_.size(), 0);
+  place_points(robot);
   const auto cells = static_cast<std::size_t>(3 * nv_);
   for (Kinematics3& p : points_) p.jacobian.assign(cells, 0.0);
+  for (FrameRotation& f : frames_) f.angular.jacobian.assign(cells, 0.0);
+  angular_.jacobian.assign(cells, 0.0);
+  mass_matrix_.assign(static_cast<std::size_t>(nv_ * nv_), 0.0);
   com_.jacobian.assign(cells, 0.0);
   base_.jacobian.assign(cells, 0.0);
   bias_.assign(static_cast<std::size_t>(nv_), 0.0);
@@ -143,6 +141,35 @@ ControlModel::ControlModel(const RobotDescription& robot, const ModelDeviation& 
 }
 
 ControlModel::~ControlModel() = default;
+
+void ControlModel::place_points(const RobotDescription& robot) {
+  const mjModel* m = mj_->model.get();
+  const auto add = [&](int body, const double* p, const double* quat, double radius) {
+    Anchor anchor = {body, {}, radius, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    if (p != nullptr) std::copy_n(p, 3, anchor.offset.begin());
+    if (quat != nullptr) mju_quat2Mat(anchor.R_LF.data(), quat);
+    anchors_.push_back(anchor);
+  };
+  const auto add_site = [&](const std::string& name, const std::string& what, double radius) {
+    const int site = require_object(m, robot, mjOBJ_SITE, name, what);
+    add(m->site_bodyid[site], m->site_pos + 3 * site, m->site_quat + 4 * site, radius);
+  };
+  for (const ContactDescription& c : robot.contacts) {
+    add_site(c.site, "contact '" + c.name + "'", c.radius);
+  }
+  for (const PointDescription& p : robot.points) {
+    if (p.body.empty()) {
+      add_site(p.site, "point '" + p.name + "'", 0.0);
+    } else {
+      add(require_object(m, robot, mjOBJ_BODY, p.body, "point '" + p.name + "'"), nullptr, nullptr,
+          0.0);
+    }
+  }
+  points_.resize(anchors_.size());
+  fresh_.assign(anchors_.size(), 0);
+  frames_.resize(anchors_.size());
+  fresh_frame_.assign(anchors_.size(), 0);
+}
 
 void ControlModel::update(const State& state) noexcept {
   state_ = state;
@@ -202,8 +229,9 @@ void ControlModel::update_positions() noexcept {
                                R[3 * k + 1] * a.offset[1] + R[3 * k + 2] * a.offset[2];
     }
     points_[i].position[2] -= a.radius;
-    fresh_[i] = 0;
+    fresh_[i] = fresh_frame_[i] = 0;
   }
+  fresh_angular_ = false;
 }
 
 void ControlModel::fill_point(int index) const noexcept {
@@ -213,6 +241,47 @@ void ControlModel::fill_point(int index) const noexcept {
          anchors_[i].body);
   point_motion(anchors_[i].body, out.position.data(), &out.velocity, out.bias);
   fresh_[i] = 1;
+}
+
+void ControlModel::fill_frame(int index) const noexcept {
+  const auto i = static_cast<std::size_t>(index);
+  const mjData* d = mj_->data.get();
+  const int body = anchors_[i].body;
+  FrameRotation& out = frames_[i];
+  mju_mulMatMat(out.R_WF.data(), d->xmat + 9 * body, anchors_[i].R_LF.data(), 3, 3, 3);
+  out.rpy = rpy_of(out.R_WF);
+  mj_jac(mj_->model.get(), d, nullptr, out.angular.jacobian.data(), points_[i].position.data(),
+         body);
+  std::copy_n(d->cvel + 6 * body, 3, out.angular.velocity.begin());
+  std::copy_n(d->cacc + 6 * body, 3, out.angular.bias.begin());
+  fresh_frame_[i] = 1;
+}
+
+// The first six rows of A are the momentum of the whole tree as the base's velocity sees it: linear
+// in world axes, angular about the base's origin p in its own axes. About the CoM c:
+//   A_G = R_WB A[3:6] - (c - p) x A[0:3]
+// and the first six entries of b + g, the wrench that q̈ = 0 takes, give Ȧ_G q̇ in the same way:
+// gravity has no moment about the CoM.
+void ControlModel::fill_angular_momentum() const noexcept {
+  mj_fullM(mj_->model.get(), mass_matrix_.data(), mj_->data->qM);
+  const Vector3 r = {com_.position[0] - state_.p_WB[0], com_.position[1] - state_.p_WB[1],
+                     com_.position[2] - state_.p_WB[2]};
+  const auto about_com = [&](const std::array<double, 6>& w) -> Vector3 {
+    const Vector3 rxf = cross(r.data(), w.data());
+    Vector3 n{};
+    mju_mulMatVec(n.data(), R_WB_.data(), w.data() + 3, 3, 3);
+    return {n[0] - rxf[0], n[1] - rxf[1], n[2] - rxf[2]};
+  };
+  const auto n = static_cast<std::size_t>(nv_);
+  for (std::size_t q = 0; q < n; ++q) {
+    std::array<double, 6> column{};
+    for (std::size_t i = 0; i < 6; ++i) column[i] = mass_matrix_[i * n + q];
+    const Vector3 h = about_com(column);
+    for (std::size_t k = 0; k < 3; ++k) angular_.jacobian[k * n + q] = h[k];
+  }
+  angular_.bias = about_com({bias_[0], bias_[1], bias_[2], bias_[3], bias_[4], bias_[5]});
+  std::copy_n(momentum_.begin() + 3, 3, angular_.velocity.begin());
+  fresh_angular_ = true;
 }
 
 void ControlModel::update_com_and_base() noexcept {
@@ -238,9 +307,7 @@ void ControlModel::update_com_and_base() noexcept {
     base_.bias[k] = d->cacc[6 * base_body_ + static_cast<int>(k)];
     base_.position[k] = state_.p_WB[k];
   }
-  rpy_[0] = std::atan2(R_WB_[7], R_WB_[8]);
-  rpy_[1] = std::asin(std::clamp(-R_WB_[6], -1.0, 1.0));
-  rpy_[2] = std::atan2(R_WB_[3], R_WB_[0]);
+  rpy_ = rpy_of(R_WB_);
 }
 
 TreeFactor ControlModel::factor() const noexcept {

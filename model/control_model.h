@@ -31,6 +31,13 @@ struct Kinematics3 {
   std::vector<double> jacobian;      // 3 x nv, row-major
 };
 
+// Orientation of a point's frame, and its rotation as a 3-row task Jacobian.
+struct FrameRotation {
+  Kinematics3 angular;           // velocity = ω, bias = J̇_ω q̇, world axes; position unused
+  std::array<double, 9> R_WF{};  // row-major
+  std::array<double, 3> rpy{};   // rad, R_WF = Rz(yaw) Ry(pitch) Rx(roll)
+};
+
 class ControlModel {
  public:
   // Throws std::runtime_error with one clear sentence (MuJoCo's own text for a malformed MJCF).
@@ -61,6 +68,12 @@ class ControlModel {
   const std::array<double, 3>& point_position(int index) const noexcept {
     return points_[static_cast<std::size_t>(index)].position;
   }
+  // Orientation of the same points: of the site (or link) that the robot file names. Computed when
+  // it is first asked for.
+  const FrameRotation& frame(int index) const noexcept {
+    if (fresh_frame_[static_cast<std::size_t>(index)] == 0) fill_frame(index);
+    return frames_[static_cast<std::size_t>(index)];
+  }
   const Kinematics3& com() const noexcept { return com_; }
   // Angular velocity of the floating base, world axes: velocity = ω, bias = J̇_ω q̇.
   const Kinematics3& base_rotation() const noexcept { return base_; }
@@ -68,6 +81,14 @@ class ControlModel {
   const std::array<double, 3>& rpy() const noexcept { return rpy_; }    // rad, R = Rz Ry Rx
   // About the CoM, world axes: linear (kg m/s) then angular (kg m^2/s).
   const std::array<double, 6>& centroidal_momentum() const noexcept { return momentum_; }
+
+  // Angular momentum about the CoM, world axes: velocity = h = A_G q̇ (kg m^2/s), jacobian = A_G
+  // (the angular rows of the centroidal momentum matrix), bias = Ȧ_G q̇, so that A_G q̈ + Ȧ_G q̇ is
+  // the moment of the contact forces about the CoM. Computed when it is first asked for.
+  const Kinematics3& angular_momentum() const noexcept {
+    if (!fresh_angular_) fill_angular_momentum();
+    return angular_;
+  }
 
   const std::vector<double>& bias() const noexcept { return bias_; }  // b + g, nv
   TreeFactor factor() const noexcept;
@@ -82,9 +103,13 @@ class ControlModel {
     int body = 0;
     std::array<double, 3> offset{};  // m, link frame
     double radius = 0.0;             // m, below it lies the contact point
+    std::array<double, 9> R_LF{};    // of its frame in the link's, row-major
   };
   void update_positions() noexcept;
   void fill_point(int index) const noexcept;
+  void fill_frame(int index) const noexcept;
+  void fill_angular_momentum() const noexcept;
+  void place_points(const RobotDescription& robot);
   void update_com_and_base() noexcept;
   void point_motion(int body, const double* p, std::array<double, 3>* velocity,
                     std::array<double, 3>& bias) const noexcept;
@@ -97,8 +122,13 @@ class ControlModel {
   double gravity_ = 9.81;
   State state_;
   std::vector<Anchor> anchors_;
-  mutable std::vector<Kinematics3> points_;   // Jacobians of named points are filled on demand
-  mutable std::vector<unsigned char> fresh_;  // which of them are of the state given last
+  mutable std::vector<Kinematics3> points_;    // Jacobians of named points are filled on demand
+  mutable std::vector<unsigned char> fresh_;   // which of them are of the state given last
+  mutable std::vector<FrameRotation> frames_;  // on demand too
+  mutable std::vector<unsigned char> fresh_frame_;
+  mutable Kinematics3 angular_;
+  mutable bool fresh_angular_ = false;
+  mutable std::vector<double> mass_matrix_;  // nv x nv, for angular_
   Kinematics3 com_;
   Kinematics3 base_;
   std::array<double, 9> R_WB_{};

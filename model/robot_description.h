@@ -38,9 +38,11 @@ struct ContactDescription {
   double friction = 0.9;  // coefficient that checks count on; the world has its own
 };
 
+// A named place with a frame: a site of the model with its orientation, or a body's own frame.
 struct PointDescription {
   std::string name;
   std::string site;
+  std::string body{};  // instead of a site
 };
 
 struct JointGroup {

@@ -74,7 +74,8 @@ constexpr KeySpec kContactRows[] = {
 };
 
 constexpr KeySpec kPointRows[] = {
-    key("site", text_of("a site's name"), "its place in the model").required(),
+    key("site", text_of("a site's name"), "its place in the model, and its frame's orientation"),
+    key("body", text_of("a body's name"), "instead of a site: the body's own frame"),
 };
 
 constexpr KeySpec kSensorsRows[] = {
@@ -118,8 +119,9 @@ constinit const core::KeyTable kContactKeys = {
     .id = "contact", .doc = "A place that can touch the world.", .keys = kContactRows};
 constinit const core::KeyTable kPointKeys = {
     .id = "point",
-    .doc = "A place that tasks can move. Contacts are points too.",
-    .keys = kPointRows};
+    .doc = "A place that tasks can move, with a frame. Contacts are points too.",
+    .keys = kPointRows,
+    .one_of = {"site body"}};
 constinit const core::KeyTable kSensorsKeys = {
     .id = "sensors", .doc = "What is measured.", .keys = kSensorsRows};
 constinit const core::KeyTable kImuKeys = {

@@ -242,12 +242,25 @@ class RobotLoader {
             entry.key_mark, "duplicate",
             fmt::format("'{}' is a contact already, and a contact is a point", entry.key));
       }
-      PointDescription point{entry.key, {}};
-      if (core::expect_map(entry.value, "a point: {site: NAME}", diagnostics_)) {
-        core::check_keys(entry.value, kPointKeys, diagnostics_);
-        point.site = read_site(entry.value);
+      PointDescription point{entry.key, {}, {}};
+      if (core::expect_map(entry.value, "a point: {site: NAME} or {body: NAME}", diagnostics_)) {
+        read_point(entry.value, point);
       }
       robot_.points.push_back(std::move(point));
+    }
+  }
+
+  void read_point(const YamlNode& node, PointDescription& point) {
+    core::check_keys(node, kPointKeys, diagnostics_);
+    const YamlNode* const body = node.find("body");
+    if (body == nullptr) {
+      point.site = read_site(node);
+      return;
+    }
+    point.body = core::read_text(*body, diagnostics_, "a body's name").value_or("");
+    if (const YamlNode* const site = node.find("site")) {
+      diagnostics_.error(site->mark, "misplaced-key",
+                         "a point is at a site or at a body, not both");
     }
   }
 

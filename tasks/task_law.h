@@ -4,8 +4,18 @@
 //   acceleration_limit
 //
 // Source: [Kim16] eq. (37). Orientation errors are the logarithm of R_ref R_measuredᵀ on the axes
-// of the heading frame (z up, x where the torso points), so that pitch and roll keep their meaning
-// whatever the yaw; an axis that is not controlled takes its reference from what is measured.
+// of the heading frame (z up, x where the torso, or the frame itself, points), so that pitch and
+// roll keep their meaning whatever the yaw; an axis that is not controlled takes its reference from
+// what is measured. Frame::world gives the same vector on the world's axes.
+//
+// Angular momentum h is known as a rate only, so its law is the one above, one derivative up: kd
+// acts on h's error, kp on the integral of that error, and ḣ_ref is the reference's derivative:
+//   ḣ = ḣ_ref + kd (h_ref - h) + kp ∫(h_ref - h) dt
+//
+// Frame::stance measures positions from the mean of the contact points in force: the rows are
+// J - mean J_c. While these contacts hold, J_c q̈ + J̇_c q̇ = 0, and the torques are those of
+// Frame::world with the reference moved along. (The contact point of a ball that rolls travels on
+// by radius times angle; as elsewhere the rows are those of the material points.)
 #pragma once
 
 #include <vector>
@@ -20,7 +30,7 @@ struct AxisEvaluation {
   double measured = 0.0;
   double velocity = 0.0;
   double error = 0.0;      // reference minus measured (log map for orientations)
-  double commanded = 0.0;  // u
+  double commanded = 0.0;  // u; with a slope that of p - slope x
 };
 
 // Integrals of all tasks, kept across states; sized at load.
@@ -30,9 +40,8 @@ class TaskMemory {
   double& integral(int instance, int axis) noexcept {
     return integral_[static_cast<std::size_t>(instance * stride_ + axis)];
   }
-  // True once per tick and instance: a task that serves two control laws integrates once.
-  bool claim(int instance, std::int64_t tick) noexcept;
-  void reset(int instance) noexcept;
+  // True once per tick, instance and axis: a task that serves two control laws integrates once.
+  bool claim(int instance, int axis, std::int64_t tick) noexcept;
 
  private:
   int stride_;
@@ -45,15 +54,23 @@ struct LawContext {
   const model::ControlModel* model = nullptr;
   TaskMemory* memory = nullptr;
   std::int64_t tick = 0;
-  double period = 0.0;      // s
-  int stance_contact = -1;  // origin of Frame::stance
+  double period = 0.0;            // s
+  const int* contacts = nullptr;  // that hold: the origin of Frame::stance is their mean
+  int contact_count = 0;
 };
 
-// Position of one axis as measured now, world frame (orientation: roll, pitch, yaw).
+// Position of one axis as measured now, world frame (orientation: roll, pitch, yaw; angular
+// momentum: about the CoM), and its velocity where it is that of a position (else 0).
 double measured_position(const model::ControlModel& model, TaskType type, int point,
                          int axis) noexcept;
+double measured_velocity(const model::ControlModel& model, TaskType type, int point,
+                         int axis) noexcept;
 
-// Writes the task's rows: J (axis_count x nv row-major), bias J̇q̇ and evaluations, one per axis.
+// Writes the task's rows, Jacobian, bias and what is measured, without its gains' law.
+void task_rows(const TaskCommand& task, const AxisCommand* axes, const LawContext& context,
+               double* J, double* J_bias, AxisEvaluation* out) noexcept;
+
+// The same with the law: J (axis_count x nv row-major), bias J̇q̇ and evaluations, one per axis.
 void evaluate_task(const TaskCommand& task, const AxisCommand* axes, const LawContext& context,
                    double* J, double* J_bias, AxisEvaluation* out) noexcept;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace footfall::tasks {
 namespace {
@@ -99,8 +100,8 @@ void WholeBodyController::assemble_contacts(WboscProblem& problem,
 void WholeBodyController::assemble_tasks(WboscProblem& problem, const ControlSet& set,
                                          std::int64_t tick, AxisEvaluation* axes) noexcept {
   const int n = model_.nv();
-  const LawContext context = {&model_, &memory_, tick, period_,
-                              set.contact_count > 0 ? set.contacts[0] : -1};
+  const LawContext context = {&model_,          &memory_, tick, period_, set.contacts.data(),
+                              set.contact_count};
   int row = 0;
   int levels = 0;
   for (int t = 0; t < set.task_count; ++t) {
@@ -110,7 +111,7 @@ void WholeBodyController::assemble_tasks(WboscProblem& problem, const ControlSet
                   problem.J_bias.data() + row, axes + task.first_axis);
     for (int i = 0; i < task.axis_count; ++i, ++row) {
       problem.u[at(row)] = axes[task.first_axis + i].commanded;
-      problem.weight[at(row)] = task.weight;
+      problem.weight[at(row)] = set.axes[at(task.first_axis + i)].weight;
     }
     const bool opens_level = t == 0 || set.tasks[at(t - 1)].priority != task.priority;
     if (opens_level && levels < sizes_.levels) ++levels;
@@ -219,9 +220,15 @@ void WholeBodyController::report(const ActiveControl& control) noexcept {
       result_.achieved[at(task.first_axis + i)] = a.achieved[at(row)];
     }
   }
-  for (int i = 0; i < primary_.problem().named_internal_rows; ++i) {
-    result_.internal[at(i)] = a.internal[at(i)];
-    result_.internal_measured[at(i)] = a.internal_measured[at(i)];
+  int pair = 0;
+  for (int i = 0; i < control.primary.internal_count; ++i) {
+    const InternalCommand& c = control.primary.internals[at(i)];
+    const bool holds =
+        place_in(control.primary, c.contact_a) >= 0 && place_in(control.primary, c.contact_b) >= 0;
+    constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
+    result_.internal[at(i)] = holds ? a.internal[at(pair)] : kNoForce;
+    result_.internal_measured[at(i)] = holds ? a.internal_measured[at(pair)] : kNoForce;
+    if (holds) ++pair;
   }
 }
 

@@ -43,7 +43,7 @@ struct ControllerResult {
   std::array<double, core::kMaxAxes> achieved{};      // as primary.axes; primary law alone
   std::array<TaskReport, core::kMaxTasks> tasks{};    // as primary.tasks
   std::array<double, core::kMaxInternal>
-      internal{};  // N, mean convention, as primary.internals, predicted
+      internal{};  // N, mean convention, as primary.internals, predicted; NaN: no such contacts
   std::array<double, core::kMaxInternal> internal_measured{};  // N, from measured joint torque
   bool limited = false;
   bool finite = true;

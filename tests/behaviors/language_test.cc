@@ -62,7 +62,7 @@ TEST(Language, EveryTaskTypeOfTheTablesIsOneOfTheLoader) {
 // (apps/scalar_patterns.cc).
 TEST(Language, SignalsHaveADotInTheirNameButForAFew) {
   core::SignalTable table;
-  register_signals({}, {{"height", {"z"}, false}}, {"tension"}, {"foot"}, table);
+  register_signals({}, {{"height", {"z"}, {core::kLength}, false}}, {"tension"}, {"foot"}, table);
   const std::set<std::string> known = {"time", "steps", "state", "faults"};
   for (const core::SignalInfo& info : table.infos()) {
     const bool dotted = info.name.find('.') != std::string::npos;

@@ -23,15 +23,6 @@ TEST(LoaderControl, AnUnknownTaskTypeComesWithASuggestion) {
   EXPECT_EQ(problems(with("{f: {type: com_postion, reference: 0, gains: {kp: 1}}}")),
             "b.yaml:6:23: error: unknown task type 'com_postion' (did you mean 'com_position'?)\n");
 }
-TEST(LoaderControl, TaskTypesOfLaterVersionsAreRefused) {
-  EXPECT_EQ(problems(with("{f: {type: frame_pose, reference: 0, gains: {kp: 1}}}")),
-            "b.yaml:6:23: error: task type 'frame_pose' is not available in this version\n");
-}
-TEST(LoaderControl, TrajectoriesOfLaterVersionsAreRefused) {
-  EXPECT_EQ(
-      problems(with("{f: {type: com_position, gains: {kp: 1}, reference: {trajectory: ellipse}}}")),
-      "b.yaml:6:77: error: trajectory 'ellipse' is not available in this version\n");
-}
 TEST(LoaderControl, AMissingGainEntryIsAnError) {
   EXPECT_EQ(problems(with("{f: {type: com_position, reference: 0}}", "{stack: s}",
                           "    gains: g\ngains: {g: {other: {kp: 1}}}\n")),

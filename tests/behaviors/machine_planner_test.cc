@@ -56,6 +56,20 @@ TEST_F(Planner, IsAskedOnceAtItsPartOfTheState) {
     EXPECT_TRUE(run->machine.plan_requests().empty());
   }
 }
+TEST_F(Planner, AnAnswerFindsItsRequestHoweverManyWereMadeAfterIt) {
+  begin("at: 0 s, every: 0.1 ms");  // in every tick
+  run->tick();
+  ASSERT_EQ(run->machine.plan_requests().size(), 1u);
+  const auto first = run->machine.plan_requests()[0];
+  for (int k = 0; k < 100; ++k) run->tick();  // of 150 in the state
+  const auto later = run->machine.plan_requests()[0];
+  run->machine.deliver(answer(first, 0.25));
+  EXPECT_EQ(run->signal("planner.foot.target.x"), 0.25);
+  run->machine.deliver(answer(later, 0.5));
+  EXPECT_EQ(run->signal("planner.foot.target.x"), 0.5);
+  run->machine.deliver(answer(first, 0.1));  // answered already
+  EXPECT_EQ(run->signal("planner.foot.target.x"), 0.5);
+}
 TEST_F(Planner, IsAskedAgainAndAgainWithEvery) {
   begin("at: 10 ms, every: 20 ms");
   std::vector<std::int64_t> asked;

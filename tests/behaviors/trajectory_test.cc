@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace footfall::tests {
 namespace {
@@ -71,6 +73,58 @@ TEST(Trajectory, NoTimeAtAllMeansBeingThere) {
     const Motion m = sample(make_segment(shape, {0.4, 0.0, 0.0}, 0.9, 0.0, 0.0), 0.0);
     EXPECT_EQ(m.pos, 0.9);
     EXPECT_TRUE(std::isfinite(m.vel) && std::isfinite(m.acc));
+  }
+}
+
+std::vector<behaviors::Knot> knots_of(const std::vector<std::array<double, 2>>& points,
+                                      double start_velocity, double end_velocity) {
+  std::vector<behaviors::Knot> knots;
+  for (const auto& [time, pos] : points) knots.push_back({time, pos, 0.0, 0.0});
+  knots.front().vel = start_velocity;
+  knots.back().vel = end_velocity;
+  behaviors::fit_knots(knots);
+  return knots;
+}
+
+TEST(Trajectory, KnotsArePassedInTime) {
+  const auto knots = knots_of({{0.0, 0.3}, {0.1, 0.9}, {0.25, 0.2}, {0.4, 0.5}}, 0.7, -0.2);
+  for (const auto& knot : knots) {
+    EXPECT_NEAR(behaviors::sample_knots(knots, knot.time).pos, knot.pos, 1e-14);
+  }
+  EXPECT_NEAR(behaviors::sample_knots(knots, 0.0).vel, 0.7, 1e-13);
+  EXPECT_NEAR(behaviors::sample_knots(knots, 0.6).pos, 0.5 - 0.2 * 0.2, 1e-14);
+}
+TEST(Trajectory, ACubicIsItsOwnSpline) {
+  // x = t³ - t²: the complete spline through points of a cubic with its end velocities is that
+  // cubic.
+  const auto x = [](double t) { return t * t * t - t * t; };
+  const auto v = [](double t) { return 3 * t * t - 2 * t; };
+  const auto knots = knots_of({{0.0, x(0)}, {0.3, x(0.3)}, {0.8, x(0.8)}, {1.0, x(1)}}, v(0), v(1));
+  EXPECT_NEAR(knots[1].vel, v(0.3), 1e-14);
+  EXPECT_NEAR(knots[2].vel, v(0.8), 1e-14);
+  EXPECT_NEAR(knots[1].acc, 6 * 0.3 - 2, 1e-13);
+  EXPECT_NEAR(behaviors::sample_knots(knots, 0.55).pos, x(0.55), 1e-14);
+}
+TEST(Trajectory, AcrossKnotsNothingJumps) {
+  const auto knots = knots_of({{0.0, 0.3}, {0.1, 0.9}, {0.25, 0.2}, {0.4, 0.5}}, 0.0, 0.0);
+  for (const double t : {0.1, 0.25, 0.4}) {
+    const Motion before = behaviors::sample_knots(knots, t - 1e-12);
+    const Motion after = behaviors::sample_knots(knots, t);
+    // 1e-12 s of the next derivative each: acceleration ~1e3, jerk ~1e5.
+    EXPECT_NEAR(before.pos, after.pos, 1e-10);
+    EXPECT_NEAR(before.vel, after.vel, 1e-8);
+    EXPECT_NEAR(before.acc, after.acc, 1e-5);
+  }
+}
+TEST(Trajectory, KnotsHaveTheirOwnDerivatives) {
+  const auto knots = knots_of({{0.0, 0.3}, {0.4, 0.9}, {1.0, 0.2}}, 0.4, 0.1);
+  const double d = 1e-5;  // central differences: d²/6 of the third derivative, far below 1e-5 here
+  for (const double t : {0.1, 0.35, 0.5, 0.9}) {
+    const Motion before = behaviors::sample_knots(knots, t - d);
+    const Motion after = behaviors::sample_knots(knots, t + d);
+    const Motion now = behaviors::sample_knots(knots, t);
+    EXPECT_NEAR(now.vel, (after.pos - before.pos) / (2 * d), 1e-5);
+    EXPECT_NEAR(now.acc, (after.vel - before.vel) / (2 * d), 1e-5);
   }
 }
 

@@ -57,6 +57,39 @@ std::string slurp(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+TEST(ControlLoop, WhatIsNotInForceHasNoValue) {
+  StubRig rig(R"(
+behavior: 1
+robot: hume
+machine:
+  states:
+    both:
+      contacts: [right_foot, left_foot]
+      internal: {push: {between: all, reference: 20 N, convention: sum}}
+      tasks: {rest: {type: joint_damping, gains: {kd: 2}}}
+      transitions: [{when: "task.later.error < 1 m", to: never}, {after: 10 ms, to: one}]
+    one:
+      contacts: [right_foot]
+      tasks: {later: {type: com_position, axes: [z], reference: 0.8 m, gains: {kp: 1}}}
+    never: {}
+)");
+  rig.loop->start();
+  const auto value = [&](const char* name) {
+    return rig.loop->signals()[rig.loop->signals().find(name)];
+  };
+  for (int k = 0; k < 5; ++k) rig.loop->tick();
+  EXPECT_EQ(rig.state(), "both");
+  EXPECT_TRUE(std::isnan(value("task.later.error")));
+  EXPECT_TRUE(std::isnan(value("task.later.reference.z")));
+  EXPECT_TRUE(std::isfinite(value("task.rest.error")));
+  EXPECT_DOUBLE_EQ(value("internal.push.reference"), 20.0);  // as the behavior writes it
+  for (int k = 0; k < 15; ++k) rig.loop->tick();
+  EXPECT_EQ(rig.state(), "one");
+  EXPECT_TRUE(std::isfinite(value("task.later.error")));
+  EXPECT_TRUE(std::isnan(value("task.rest.authority")));
+  EXPECT_TRUE(std::isnan(value("internal.push.measured")));
+}
+
 TEST(ControlLoop, TicksOnTheStubBackend) {
   StubRig rig(kStand);
   rig.loop->start();

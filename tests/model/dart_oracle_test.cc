@@ -215,5 +215,46 @@ TEST_F(ModelAgainstDart, CentroidalMomentumIsTheSumOverTheLinks) {
   }
 }
 
+TEST_F(ModelAgainstDart, FramesOfPointsAgree) {
+  for (int i = 0; i < 50; ++i) {
+    next();
+    for (int point = 0; point < model_.point_count(); ++point) {
+      const auto p = static_cast<std::size_t>(point);
+      const bool contact = p < robot_.contacts.size();
+      BodyNode* body = dart_.body_of_site(contact ? robot_.contacts[p].site
+                                                  : robot_.points[p - robot_.contacts.size()].site);
+      const MatrixXd J = dart_.skeleton().getAngularJacobian(body);
+      const MatrixXd Jdot = dart_.skeleton().getAngularJacobianDeriv(body);
+      const model::FrameRotation& frame = model_.frame(point);
+      // Hume's sites are not turned against their links.
+      expect_equal(
+          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(frame.R_WF.data()),
+          body->getTransform().linear());
+      expect_equal(jacobian(frame.angular), dart_.ours(J));
+      expect_equal(bias(frame.angular), dart_.bias_of(J, Jdot));
+    }
+  }
+}
+
+// A_G = Σ I J_ω + m (c_i - c) x J_v over the links.
+TEST_F(ModelAgainstDart, TheAngularMomentumMatrixIsTheSumOverTheLinks) {
+  for (int i = 0; i < 50; ++i) {
+    next();
+    const Vector3d com = dart_.skeleton().getCOM();
+    MatrixXd sum = MatrixXd::Zero(3, 12);
+    for (BodyNode* body : dart_.skeleton().getBodyNodes()) {
+      const Eigen::Matrix3d R = body->getTransform().linear();
+      const Vector3d arm = body->getCOM() - com;
+      Eigen::Matrix3d cross;
+      cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+      sum += R * body->getInertia().getMoment() * R.transpose() *
+             dart_.skeleton().getAngularJacobian(body);
+      sum +=
+          body->getMass() * cross * dart_.skeleton().getLinearJacobian(body, body->getLocalCOM());
+    }
+    expect_equal(jacobian(model_.angular_momentum()), dart_.ours(sum));
+  }
+}
+
 }  // namespace
 }  // namespace footfall::tests

@@ -229,6 +229,17 @@ TEST_F(Controller, TheFrozenForceStaysThatOfEntry) {
   EXPECT_EQ((tau() - before).cwiseAbs().maxCoeff(), 0.0);
 }
 
+TEST_F(Controller, FromTheStanceFeetTheTorquesAreThoseOfTheWorldWithTheReferenceMovedAlong) {
+  for (auto& axis : dual_.axes) axis.kd = 0.0;  // how fast the feet slip is no error of the world's
+  const VectorXd world = torque_of(dual_);
+  dual_.tasks[0].frame = tasks::Frame::stance;
+  dual_.axes[0].ref -=
+      0.5 * (model_.point(kRightFoot).position[2] + model_.point(kLeftFoot).position[2]);
+  for (int i = 0; i < dual_.task_count; ++i) dual_.tasks[static_cast<std::size_t>(i)].fresh = true;
+  const VectorXd stance = torque_of(dual_);
+  EXPECT_LE((stance - world).cwiseAbs().maxCoeff(), kBar * world.cwiseAbs().maxCoeff());
+}
+
 TEST_F(Controller, LimitsAreReported) {
   tasks::WholeBodyController limited(model_, std::vector<double>(6, 1.0), {4, 16, 2, 2}, 1e-3);
   control_.primary = single_;
