@@ -127,7 +127,14 @@ std::string task_types() {
     const bool has_reference = core::belongs_to(reference, word.word);
     std::string axes = fmt::format("{}", fmt::join(type->axes, " "));
     if (type->joints) axes = "the robot's joints (`joints`)";
-    const char* unit = !has_reference ? "none" : type->angular ? "rad" : "m";
+    std::vector<std::string> units;
+    const int axis_count = type->joints ? 1 : static_cast<int>(type->axes.size());
+    for (int axis = 0; has_reference && axis < axis_count; ++axis) {
+      const core::Dimension dimension = type->position(axis);
+      const std::string unit = dimension == core::kNone ? "rad" : core::unit_text(dimension);
+      if (units.empty() || units.back() != unit) units.push_back(unit);
+    }
+    const std::string unit = has_reference ? fmt::format("{}", fmt::join(units, " and ")) : "none";
     out += fmt::format("| `{}` | {} | {} | {} |\n", word.word, axes, unit, word.doc);
   }
   return out;

@@ -27,7 +27,9 @@ core::SignalTable symbolic_signals(bool angular) {
   robot.points.resize(1);
   robot.points[0].name = "POINT";
   core::SignalTable table;
-  behaviors::register_signals(robot, {{"TASK", {"AXIS"}, angular}}, {"FORCE"}, {"PLANNER"}, table);
+  behaviors::register_signals(robot,
+                              {{"TASK", {"AXIS"}, {angular ? core::kNone : core::kLength}, false}},
+                              {"FORCE"}, {"PLANNER"}, table);
   return table;
 }
 

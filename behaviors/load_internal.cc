@@ -47,7 +47,8 @@ bool same_pair(const InternalSpec& a, const Pair& b) {
 std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem& item) {
   core::YamlNode map;
   map.kind = core::YamlNode::Kind::map;
-  for (const DraftKey& key : item.keys) map.entries.push_back({key.key, key.mark, false, {}});
+  for (const DraftKey& key : item.keys)
+    map.entries.push_back({key.key, key.mark, false, *key.node});
   core::check_keys(map, kInternalKeys, context.diagnostics);
   const DraftKey* reference = item.find("reference");
   if (item.find("between") == nullptr || reference == nullptr) {
