@@ -69,7 +69,7 @@ std::string outcome_card(const Log& log, const json& summary) {
   if (fell || end == "fall") return card("outcome", "fell", "", "bad");
   if (end == "fault") return card("outcome", "stopped by a fault", "", "bad");
   if (!log.complete) return card("outcome", "cut off", "the log has no proper end", "warn");
-  if (end == "stopped") return card("outcome", "stopped by hand", "", "warn");
+  if (end == "stopped") return card("outcome", "ended by the behavior or by hand", "", "warn");
   return card("outcome", "no fall", end.empty() ? "" : "end: " + end, "good");
 }
 
