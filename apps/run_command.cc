@@ -198,6 +198,7 @@ int run_behavior(const RunOptions& options) {
   engine::LoopSettings settings;
   settings.deviation = {world.control_model.mass_scale, world.control_model.com_shift};
   settings.planner_latency = world.planner_latency;
+  settings.surface = world.surface;
   settings.lockstep = !options.realtime;
   settings.seed = options.seed;
   const auto allows = [&](const char* what) {

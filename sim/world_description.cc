@@ -105,7 +105,6 @@ class WorldLoader {
   }
 
   void read_surface(const YamlNode& node) {
-    world_.surface_mark = node.mark;
     if (!core::expect_map(node, "{ramps: [{from: X, to: X, rise: Z}, ...]}", diagnostics_)) return;
     core::check_keys(node, kSurfaceKeys, diagnostics_);
     const YamlNode* const ramps = core::require_key(node, "ramps", diagnostics_);
@@ -113,8 +112,7 @@ class WorldLoader {
     for (const YamlNode& item : ramps->items) {
       if (!core::expect_map(item, "a ramp: {from: X, to: X, rise: Z}", diagnostics_)) continue;
       core::check_keys(item, kRampKeys, diagnostics_);
-      SurfaceRamp ramp;
-      ramp.mark = item.mark;
+      model::SurfaceRamp ramp;
       bool good = true;
       const auto read = [&](std::string_view key, double& out) {
         good = core::require_key(item, key, diagnostics_) != nullptr &&
@@ -126,7 +124,7 @@ class WorldLoader {
       if (good && ramp.to <= ramp.from) {
         diagnostics_.error(item.mark, "range", "expected 'from' before 'to' in a ramp");
       }
-      world_.surface.push_back(ramp);
+      world_.surface.ramps.push_back(ramp);
     }
   }
 
@@ -306,7 +304,6 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
     diagnostics.error(mark, "unsupported",
                       fmt::format("the simulator does not support {} yet", what));
   };
-  if (!world.surface.empty()) refuse(world.surface_mark, "a CoM height surface");
   if (world.actuators.model == ActuatorModel::series_elastic) {
     refuse(world.actuators.mark, "series-elastic actuators (use 'model: ideal')");
   }

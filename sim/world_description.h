@@ -9,6 +9,7 @@
 
 #include "core/diagnostics.h"
 #include "model/control_model.h"
+#include "model/height_surface.h"
 
 namespace footfall::sim {
 
@@ -16,14 +17,6 @@ namespace footfall::sim {
 struct TerrainBox {
   std::array<double, 2> at{};    // m, centre in the world's x y
   std::array<double, 3> size{};  // m, full length, width, height above the plane
-  core::Mark mark;
-};
-
-// A piece of the CoM height surface: rises by `rise` between x = from and x = to.
-struct SurfaceRamp {
-  double from = 0.0;  // m
-  double to = 0.0;    // m
-  double rise = 0.0;  // m
   core::Mark mark;
 };
 
@@ -85,8 +78,7 @@ struct WorldDescription {
   std::string path;  // empty for the default
   double friction = 0.9;
   std::vector<TerrainBox> terrain;
-  std::vector<SurfaceRamp> surface;
-  core::Mark surface_mark;
+  model::HeightSurface surface;  // that the CoM's height is to follow
   ActuatorSettings actuators;
   SensorSettings sensors;
   model::ModelDeviation control_model;  // what the controller believes, against the truth:

@@ -72,8 +72,8 @@ TEST_F(WorldDescriptionTest, AWholeFileIsRead) {
   ASSERT_EQ(world.terrain.size(), 1u);
   EXPECT_EQ(world.terrain[0].at, (std::array<double, 2>{0.8, 0.0}));
   EXPECT_EQ(world.terrain[0].size, (std::array<double, 3>{0.6, 1.5, 0.07}));
-  ASSERT_EQ(world.surface.size(), 2u);
-  EXPECT_EQ(world.surface[1].rise, -0.07);
+  ASSERT_EQ(world.surface.ramps.size(), 2u);
+  EXPECT_EQ(world.surface.ramps[1].rise, -0.07);
   EXPECT_EQ(world.actuators.model, ActuatorModel::series_elastic);
   EXPECT_DOUBLE_EQ(world.actuators.command_delay, 667e-6);
   EXPECT_EQ(world.actuators.coulomb, 1.0);
@@ -116,7 +116,6 @@ TEST_F(WorldDescriptionTest, WhatTheSimulatorCannotDoIsRefusedAtItsPlace) {
   check_supported(world, diagnostics_);
   EXPECT_EQ(
       problems(),
-      "5:10: error: the simulator does not support a CoM height surface yet\n"
       "6:20: error: the simulator does not support series-elastic actuators (use 'model: ideal') "
       "yet\n"
       "6:68: error: the simulator does not support joint friction yet\n"
