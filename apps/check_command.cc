@@ -4,12 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
 #include "behaviors/physics_check.h"
+#include "lab/scenario_loader.h"
 #include "model/control_model.h"
 #include "sim/world_description.h"
 
@@ -37,7 +39,13 @@ void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
 
 void check_world(const std::string& path, core::Diagnostics& diagnostics) {
   const sim::WorldDescription world = sim::load_world(path, diagnostics);
-  if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+  if (diagnostics.has_errors()) return;
+  core::Diagnostics refused;  // by `run`: the file is right all the same
+  sim::check_supported(world, refused);
+  for (core::Diagnostic item : refused.all()) {
+    item.text += "; runs refuse this world";
+    diagnostics.warning(item.mark, item.id, item.text);
+  }
 }
 
 // With a robot: what it asks of its physics.
@@ -61,6 +69,27 @@ void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
   check_loaded(behaviors::load_behavior(path, load_options(), diagnostics), diagnostics);
 }
 
+// The world that a scenario names: a file beside it, or one that is found by name.
+void check_world_of(const lab::ScenarioDescription& scenario, core::Diagnostics& diagnostics) {
+  if (scenario.world.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(scenario.path).parent_path();
+  const std::string beside = sim::find_world_file((folder / scenario.world).string(), {});
+  const std::string path =
+      beside.empty() ? sim::find_world_file(scenario.world, search_path()) : beside;
+  if (!path.empty()) {
+    sim::load_world(path, diagnostics);
+  } else if (scenario.world_mark.line > 0) {
+    diagnostics.error(scenario.world_mark, "cannot-read",
+                      fmt::format("unknown world '{}': no such file here, and no "
+                                  "sim/worlds/{}.yaml in {}",
+                                  scenario.world, scenario.world, fmt::join(search_path(), ", ")));
+  }
+}
+
+void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
+  check_world_of(lab::load_scenario(path, {search_path()}, diagnostics), diagnostics);
+}
+
 // Kinds of files by their first key. A file of no kind is taken for a behavior, which says so.
 struct Kind {
   const char* key;
@@ -70,6 +99,7 @@ constexpr Kind kKinds[] = {
     {"behavior", check_behavior},
     {"robot", check_robot},
     {"world", check_world},
+    {"scenario", check_scenario},
 };
 
 // The first key of the file, or of the base that it begins with; empty if it cannot be read. A word
@@ -160,11 +190,12 @@ int check(const CheckOptions& options) {
 
 void add_check_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command =
-      app.add_subcommand("check", "Checks behavior, robot and world files without running them");
+  CLI::App* command = app.add_subcommand(
+      "check", "Checks behavior, robot, world and scenario files without running them");
   command
-      ->add_option("FILE", options->files,
-                   "Behavior files or names, robot files, world files; - for a behavior on stdin")
+      ->add_option(
+          "FILE", options->files,
+          "Behavior files or names, robot, world and scenario files; - for a behavior on stdin")
       ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
   command->add_flag("--json", options->json, "One JSON object with every problem");

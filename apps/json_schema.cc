@@ -154,6 +154,12 @@ class SchemaWriter {
       // `stack: NAME` and `gains: {TASK: ...}`: a name beside a map by name.
       return {{"type", "object"}, {"additionalProperties", value_schema(inner, part)}};
     }
+    if (values[1].kind != ValueKind::none && values[1].form == ValueForm::list &&
+        values[0].form == ValueForm::list) {  // each item is one of them
+      std::array<ValueSpec, 3> items = values;
+      for (ValueSpec& value : items) value.form = ValueForm::one;
+      return or_removed({{"type", "array"}, {"items", value_schema(items, false)}});
+    }
     Json choices = Json::array();
     const KeyTable* selected = nullptr;  // a map that is told from one by axis by a key of its own
     for (const ValueSpec& value : values) {

@@ -8,13 +8,14 @@
 #include "apps/json_schema.h"
 #include "apps/reference.h"
 #include "behaviors/language.h"
+#include "lab/scenario_keys.h"
 #include "model/robot_keys.h"
 #include "sim/world_keys.h"
 
 namespace footfall::apps {
 
 std::vector<const core::FileTable*> file_tables() {
-  return {&behaviors::kBehaviorFile, &model::kRobotFile, &sim::kWorldFile};
+  return {&behaviors::kBehaviorFile, &model::kRobotFile, &sim::kWorldFile, &lab::kScenarioFile};
 }
 
 void add_schema_command(CLI::App& app, int& exit_code) {

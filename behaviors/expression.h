@@ -139,8 +139,8 @@ struct ExpressionScope {
   int entry_axis = -1;                                             // what a lone `entry` is
   core::Dimension entry_dimension;                                 // of the task's axes
   const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
-  // `max mean rms count` of one signal over a run (expectations only): the index of the signal that
-  // holds it, -1 if there is none.
+  // `max mean rms count` of one signal over a run (expectations only), "max abs" of its magnitude:
+  // the index of the signal that holds it, -1 if there is none.
   std::function<int(std::string_view reduction, int signal)> find_reduction;
 };
 

@@ -64,19 +64,25 @@ Operand ExpressionParser::parse_call(const Token& name) {
        fmt::format("unknown function '{}'{}", name.text, core::did_you_mean(name.text, names)));
 }
 
-// `rms(task.height.error)`: one of the four names and a lone signal.
+// `rms(task.height.error)`, `max(abs(base.rpy.pitch))`: one of the four names and a lone signal or
+// its magnitude ("max abs" to find_reduction).
 std::optional<Operand> ExpressionParser::parse_reduction(const Token& name) {
   constexpr std::array<std::string_view, 4> kReductions = {"max", "mean", "rms", "count"};
   if (!scope_.find_reduction || at_ + 2 >= tokens_.size() || scope_.signals == nullptr ||
       std::find(kReductions.begin(), kReductions.end(), name.text) == kReductions.end()) {
     return std::nullopt;
   }
-  const Token& of = tokens_[at_ + 1];
+  const auto text = [this](std::size_t ahead) {
+    const std::size_t k = at_ + ahead;
+    return k < tokens_.size() ? std::string_view(tokens_[k].text) : std::string_view();
+  };
+  const bool magnitude = text(1) == "abs" && text(2) == "(" && text(4) == ")" && text(5) == ")";
+  const Token& of = tokens_[at_ + (magnitude ? 3U : 1U)];
   const int signal = of.kind == Token::Kind::name ? scope_.signals->find(of.text) : -1;
-  if (signal < 0 || tokens_[at_ + 2].text != ")") return std::nullopt;
-  const int index = scope_.find_reduction(name.text, signal);
+  if (signal < 0 || (!magnitude && text(2) != ")")) return std::nullopt;
+  const int index = scope_.find_reduction(name.text + (magnitude ? " abs" : ""), signal);
   if (index < 0) fail(name, "unknown-function", fmt::format("no {}() of this signal", name.text));
-  at_ += 3;
+  at_ += magnitude ? 6 : 3;
   emit(Op::signal, index);
   if (name.text == "count") return Operand{};
   return Operand{scope_.signals->info(signal).dimension, false, false, 0.0};

@@ -61,4 +61,15 @@ mjModel_* load_robot_model(const std::string& model_path) {
       model_path);
 }
 
+std::vector<std::string> body_names(const std::string& model_path) {
+  const std::unique_ptr<mjModel, decltype(&mj_deleteModel)> m(load_robot_model(model_path),
+                                                              mj_deleteModel);
+  std::vector<std::string> names;
+  for (int body = 1; body < m->nbody; ++body) {
+    const char* name = mj_id2name(m.get(), mjOBJ_BODY, body);
+    if (name != nullptr && *name != '\0') names.emplace_back(name);
+  }
+  return names;
+}
+
 }  // namespace footfall::model

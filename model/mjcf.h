@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 struct mjModel_;
 
@@ -14,5 +15,8 @@ mjModel_* compile_mjcf(const std::string& xml, const std::string& what);
 // The robot alone, as physics needs it: shapes that are only seen are left out, since kinematics
 // would otherwise carry every one of them.
 mjModel_* load_robot_model(const std::string& model_path);
+
+// The names of its bodies, without the world and those that have none. Throws like the others.
+std::vector<std::string> body_names(const std::string& model_path);
 
 }  // namespace footfall::model

@@ -333,6 +333,20 @@ class Check(Case):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.refused(self.footfall("check", self.write("w.yaml", "world: 1\ngruond: {}\n")), 2, "gruond")
 
+    def test_a_world_that_runs_refuse_is_right_all_the_same(self):
+        world = self.write("w.yaml", "world: 1\nactuators: {model: series_elastic}\n")
+        result = self.footfall("check", world)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"{world}:2:20: warning: ", result.stderr)
+        self.assertIn("runs refuse this world", result.stderr)
+        self.refused(self.run_it("balance", "--world", world), 2, "series-elastic")
+
+    def test_a_scenario(self):
+        text = "scenario: 1\nbehavior: balance\nworld: {}\nfor: 10 s\nexpect: [steps >= 10]\n"
+        result = self.footfall("check", "--strict", self.write("s.yaml", text.format("flat")))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.refused(self.footfall("check", self.write("s.yaml", text.format("moon"))), 2, "s.yaml:3:8", "moon")
+
     def test_a_behavior_on_stdin(self):
         result = subprocess.run([BINARY, "check", "-", "--stdin-name", "mine.yaml"], text=True, timeout=100,
                                 input=CHART.replace("to: b", "to: bb"), capture_output=True)

@@ -233,6 +233,11 @@ TEST_F(Expression, ReductionsOverARunAreThereOnlyWhereTheyHaveAMeaning) {
   EXPECT_EQ(value("rms(com.pos.z) < 2 m"), 1.0);
   EXPECT_EQ(error_of("rms(com.pos.z) < 2 s"), "17: cannot compare a length and a time");
   EXPECT_EQ(value("max(com.pos.z, 2 m)", core::kLength), 2.0);
+  scope_.find_reduction = [&](std::string_view name, int signal) {
+    return name == "max abs" && signal == height_ ? contact_ : -1;
+  };
+  EXPECT_EQ(value("max(abs(com.pos.z)) < 2 m"), 1.0);
+  EXPECT_EQ(error_of("rms(abs(com.pos.z))"), "0: no rms() of this signal");
 }
 TEST_F(Expression, OnlyExpressionsWithoutNamesAreConstant) {
   ExpressionError error;

@@ -16,6 +16,7 @@
 
 #include "behaviors/loader.h"
 #include "core/diagnostic_ids.h"
+#include "lab/scenario_loader.h"
 #include "model/robot_description.h"
 #include "sim/world_description.h"
 #include "tests/mistakes/source_ids.h"
@@ -81,6 +82,8 @@ std::vector<core::Diagnostic> report(const WrongFile& file) {
   } else if (file.text.find("\nworld: 1\n") != std::string::npos) {
     const auto world = sim::load_world(path, diagnostics);
     if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+  } else if (file.text.find("\nscenario: 1\n") != std::string::npos) {
+    lab::load_scenario(path, {{FOOTFALL_SOURCE_DIR}}, diagnostics);
   } else {
     behaviors::LoadOptions options;
     options.search = {FOOTFALL_SOURCE_DIR};

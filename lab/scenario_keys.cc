@@ -1,0 +1,103 @@
+// Keys and words of a scenario file; see scenario_keys.h.
+#include "lab/scenario_keys.h"
+
+namespace footfall::lab {
+namespace {
+
+using namespace core;  // the words in which tables are written
+
+constexpr KeySpec kScenarioRows[] = {
+    key("scenario", integer(1, 1), "the version of scenario files; the first key").required(),
+    key("base", text_of("the path of a scenario file"),
+        "a file this one inherits, relative to this one: maps merge by key, all else is replaced, "
+        "`NAME: off` removes, `KEY+:` appends to a list"),
+    key("name", name_of("a scenario"), "its name in reports").otherwise("the file's name"),
+    key("doc", text_of("a text"), "what it shows, in a line"),
+    key("behavior", text_of("a file beside this one, or a name in the library"), "what runs")
+        .required(),
+    key("robot", text_of("a name or path"), "on which robot").otherwise("the behavior's"),
+    key("world", text_of("a name or path"), "in which world").otherwise("flat"),
+    key("seeds", list(integer(0, 1'000'000'000)),
+        text_of("a number, or a range such as `100..119`"), "one run each")
+        .otherwise("1"),
+    key("for", quantity(kTime), "how long a run lasts").required(),
+    key("script", list(map_of(kScriptKeys)), "what happens to the robot from outside"),
+    key("expect", list(condition()), list(map_of(kExpectationKeys)),
+        "what must hold; a lone condition is judged at the end of every run"),
+};
+
+constexpr WordSpec kInjectedFaultRows[] = {
+    {"mocap.dropout", "no motion capture data"},
+    {"imu.dropout", "no IMU data"},
+    {"sensor.dropout", "no data of any sensor"},
+    {"planner.dropout", "no answers of planners"},
+};
+
+constexpr KeySpec kScriptRows[] = {
+    key("at", quantity(kTime), map_of(kMomentKeys), "when: a time in the run, or a place in it"),
+    key("on", name_of("an event or prefix"), "when: each time that this event is raised"),
+    key("push", map_of(kPushKeys), "a horizontal force on a body"),
+    key("edit", by_name(one_or_list(any_quantity())),
+        "a live edit: parameters and gains by name, applied whole or not at all"),
+    key("over", quantity(kTime), "time in which the edit ramps").otherwise("0 s"),
+    key("set", by_name(one_or_list(any_quantity())), "parameters by name, at once"),
+    key("raise", name_of("an event"), "an event from outside, with the edit if there is one"),
+    key("fault", choice(kInjectedFaultRows), "something that fails"),
+    key("hold", name_of("a body"), "a body that people hold where it is"),
+    key("for", quantity(kTime), "how long `fault` or `hold` lasts")
+        .otherwise("to the end of the run"),
+    key("doc", text_of("a text"), "why, in a line"),
+};
+
+constexpr KeySpec kMomentRows[] = {
+    key("step", integer(1, 1'000'000'000), "number of the step, from 1"),
+    key("state", name_of("a state"),
+        "while this state is active: a suffix of its path, of left and right alike"),
+    key("phase", quantity(kNone, "a part"), "of the state's or the step's duration, below 100 %")
+        .otherwise("0 %"),
+};
+
+constexpr KeySpec kPushRows[] = {
+    key("body", name_of("a body"), "at whose centre of mass it acts")
+        .otherwise("the floating base"),
+    key("force", quantity(kForce), "its size").required(),
+    key("for", quantity(kTime), "how long it lasts").required(),
+    key("direction", quantity(kNone, "an angle"), "in the heading frame: 0 forward, 90 deg left")
+        .otherwise("0 deg"),
+};
+
+constexpr KeySpec kExpectationRows[] = {
+    key("that", condition(), "a condition; `max mean rms count` of a signal are of the whole time"),
+    key("never", condition(), "a condition that may hold in no tick"),
+    key("sequence", list(name_of("a state")), "states that are entered in this order"),
+    key("after", quantity(kTime), "judged from this time in the run on"),
+    key("between", pair(quantity(kTime)), "judged between these times in the run"),
+    key("within", quantity(kTime), "the time that `sequence` may take, or by which `that` holds"),
+    key("in", text_of("a part such as `95 % of seeds`"), "of how many runs it must hold")
+        .otherwise("100 % of seeds"),
+    key("doc", text_of("a text"), "why, in a line"),
+};
+
+}  // namespace
+
+constinit const core::KeyTable kScenarioKeys = {
+    .id = "scenario", .doc = "The root of a scenario file.", .keys = kScenarioRows};
+constinit const core::KeyTable kScriptKeys = {
+    .id = "script",
+    .doc = "Something that happens to the robot from outside.",
+    .keys = kScriptRows,
+    .one_of = {"at on", "push edit set raise fault hold"}};
+constinit const core::KeyTable kMomentKeys = {
+    .id = "moment", .doc = "A place in the run.", .keys = kMomentRows, .one_of = {"step state"}};
+constinit const core::KeyTable kPushKeys = {
+    .id = "push", .doc = "A constant horizontal force on a body.", .keys = kPushRows};
+constinit const core::KeyTable kExpectationKeys = {.id = "expectation",
+                                                   .doc = "Something that must hold.",
+                                                   .keys = kExpectationRows,
+                                                   .one_of = {"that never sequence"}};
+constinit const std::span<const core::WordSpec> kInjectedFaults = kInjectedFaultRows;
+
+constinit const core::FileTable kScenarioFile = {
+    .kind = "scenario", .newest = 1, .root = &kScenarioKeys};
+
+}  // namespace footfall::lab

@@ -1,0 +1,18 @@
+// A `scenario: 1` file as data: every map with its keys, every list of words. The loader reads its
+// names from here, the JSON Schema and docs/reference.md are printed from here.
+#pragma once
+
+#include "core/key_table.h"
+
+namespace footfall::lab {
+
+extern const core::KeyTable kScenarioKeys;  // the root of the file
+extern const core::KeyTable kScriptKeys;
+extern const core::KeyTable kMomentKeys;
+extern const core::KeyTable kPushKeys;
+extern const core::KeyTable kExpectationKeys;
+extern const std::span<const core::WordSpec> kInjectedFaults;  // in the order of InjectedFault
+
+extern const core::FileTable kScenarioFile;
+
+}  // namespace footfall::lab

@@ -1,0 +1,22 @@
+// From a scenario file to a ScenarioDescription, every name checked against what it names. Load
+// time only; running scenarios is not here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lab/scenario_description.h"
+
+namespace footfall::lab {
+
+struct ScenarioOptions {
+  // Folders holding robots/NAME/robot.yaml and behaviors/library/NAME.yaml.
+  std::vector<std::string> search;
+};
+
+// Problems go to diagnostics, errors of the behavior too; the result is meaningful only without
+// errors. The world is left to who knows worlds: see ScenarioDescription::world.
+ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,
+                                  core::Diagnostics& diagnostics);
+
+}  // namespace footfall::lab
