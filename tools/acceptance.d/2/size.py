@@ -12,4 +12,4 @@ LIMIT = 90
 
 lines = len((rows.ROOT / PATH).read_text().splitlines())
 canonical = subprocess.run([rows.FOOTFALL, "fmt", "--check", PATH], cwd=rows.ROOT).returncode == 0
-rows.finish(lines < LIMIT and canonical, f"{lines} lines, {'canonical' if canonical else 'not canonical'} layout")
+rows.finish(f"{lines} lines, {'canonical' if canonical else 'not canonical'} layout", lines < LIMIT and canonical)
