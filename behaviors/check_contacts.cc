@@ -5,11 +5,10 @@
 #include <algorithm>
 
 #include "behaviors/check_structure.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // How often a foot is in contact in what can come before.
 struct Before {

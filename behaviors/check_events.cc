@@ -5,11 +5,10 @@
 #include <set>
 
 #include "behaviors/check_structure.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr std::string_view kChanged = "parameter.changed.";
 

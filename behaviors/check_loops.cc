@@ -11,13 +11,12 @@
 
 #include "behaviors/check_structure.h"
 #include "behaviors/substitution.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
 
 constexpr std::size_t kMaxConditions = 500;  // beyond, the check is silent, not slow
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // What a transition waits for, if not for one of the conditions that are counted from 0.
 constexpr int kNever = -1, kAlways = -2, kUnknown = -3;

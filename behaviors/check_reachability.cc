@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "behaviors/check_structure.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Everything that can be entered once `pending` has been.
 void spread(const LoadContext& context, std::vector<int> pending, std::vector<char>& entered) {

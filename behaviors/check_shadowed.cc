@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "behaviors/check_structure.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
 
 constexpr int kLookBack = 200;  // transitions of one state: beyond, the check is silent, not slow
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Every event that `second` names is one of `first`.
 bool event_covers(const std::string& first, std::string second) {

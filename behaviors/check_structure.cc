@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/index.h"
+
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool is_variable(const Behavior& behavior, int slot) {
   return std::any_of(behavior.parameters.begin(), behavior.parameters.end(),

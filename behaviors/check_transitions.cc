@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 
 #include "behaviors/check_structure.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 core::Mark mark_of(const LoadContext& context, int t, const char* key) {
   const core::YamlNode* node = transition_keys(context, t).find(key);

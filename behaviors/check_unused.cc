@@ -6,11 +6,10 @@
 #include <set>
 
 #include "behaviors/check_structure.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void collect_names(const std::string& text, std::set<std::string>& names) {
   const auto is_name = [](char c) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 // The most knots that the tasks of one control spec may need: the entry and the points of each
 // axis.

@@ -4,13 +4,12 @@
 #include <numbers>
 
 #include "behaviors/control_merge.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 // The second and further axes of an ellipse lag a quarter of a turn behind the first.
 double quarter(const Behavior& behavior, const TaskSpec& spec, int k) noexcept {

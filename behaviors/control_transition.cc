@@ -9,12 +9,9 @@
 #include <numbers>
 
 #include "behaviors/control_merge.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
-namespace {
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-}  // namespace
-
 void ControlMerge::update_transition(const ControlSpec& spec, const Measure& measure) noexcept {
   if (spec.transition < 0) {
     control_.has_other = false;

@@ -11,7 +11,7 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr std::size_t kDetailWidth = 60;
+constexpr std::size_t kMermaidDetailWidth = 60;
 
 // Everything that ends or opens something in Mermaid's grammar, as its `#code;` entities.
 std::string escape(std::string_view text) {
@@ -36,7 +36,7 @@ class MermaidWriter {
 
   std::string write() {
     out_ = "---\ntitle: \"" + escape(diagram_.name) + "\"\n---\nstateDiagram-v2\n";
-    for (const std::string& line : details_of(state(0), kDetailWidth)) {
+    for (const std::string& line : details_of(state(0), kMermaidDetailWidth)) {
       out_ += "  %% " + escape(line) + "\n";
     }
     write_inside(0, "  ");
@@ -82,7 +82,7 @@ class MermaidWriter {
     std::string title = escape(info.name);
     if (info.kind == StateKind::history_shallow) title = "H";
     if (info.kind == StateKind::history_deep) title = "H*";
-    const std::vector<std::string> lines = details_of(info, kDetailWidth);
+    const std::vector<std::string> lines = details_of(info, kMermaidDetailWidth);
     if (!info.children.empty()) {
       for (const std::string& line : lines) title += "<br/>" + escape(line);
       out_ += fmt::format("{}state \"{}\" as s{} {{\n", indent, title, s);

@@ -98,6 +98,10 @@ struct LoadContext {
   // For what is not there (nobody uses it, nothing raises it): not said once there are errors,
   // which may be the reason.
   void absence(core::Mark mark, std::string_view id, std::string text);
+  // The keys of a state as its file has them, templates expanded.
+  const core::YamlNode& keys_of(int state) const {
+    return sources[static_cast<std::size_t>(state)]->keys;
+  }
   // The value under a key of a map in the file's root, nullptr if there is none.
   const core::YamlNode* section(std::string_view key) const { return root.find(key); }
 

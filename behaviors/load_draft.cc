@@ -10,10 +10,6 @@
 namespace footfall::behaviors {
 namespace {
 
-const core::YamlNode& keys_of(const LoadContext& context, int state) {
-  return context.sources[static_cast<std::size_t>(state)]->keys;
-}
-
 // Two states of different regions: neither contains the other.
 bool parallel(const LoadContext& context, int a, int b) {
   return a != b && !context.behavior.is_descendant(a, b) && !context.behavior.is_descendant(b, a);
@@ -177,7 +173,7 @@ void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, in
 int stack_state(LoadContext& context, const std::vector<int>& active) {
   int best = -1;
   for (const int s : active) {
-    const core::YamlNode* stack = keys_of(context, s).find("stack");
+    const core::YamlNode* stack = context.keys_of(s).find("stack");
     if (stack == nullptr) continue;
     if (best >= 0 && parallel(context, best, s)) {
       report_clash(context, stack->mark, "`stack`", best, s);
@@ -231,7 +227,7 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
   const int owner = toward != nullptr ? toward_state : stack_state(context, active);
   if (owner >= 0) {
     const core::YamlNode& name =
-        toward != nullptr ? *toward : *keys_of(context, owner).find("stack");
+        toward != nullptr ? *toward : *context.keys_of(owner).find("stack");
     if (const core::YamlNode* stack = find_stack(context, name, owner)) {
       lay_keys(context, draft, *stack, owner, name.scalar);
       draft.mark = stack->mark;
@@ -242,7 +238,7 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
     }
   }
   for (const int s : active) {
-    const core::YamlNode& keys = keys_of(context, s);
+    const core::YamlNode& keys = context.keys_of(s);
     lay_keys(context, draft, keys, s, "");
     if (const auto* transition = keys.find("contact_transition"); transition && toward == nullptr) {
       if (draft.transition != nullptr && parallel(context, draft.transition_owner, s)) {

@@ -32,7 +32,7 @@ std::vector<std::string> split(std::string_view name) {
   return parts;
 }
 
-void put(core::YamlNode& map, const std::string& key, core::YamlNode value) {
+void put_or_replace(core::YamlNode& map, const std::string& key, core::YamlNode value) {
   if (core::YamlNode* old = child(map, key)) {
     *old = std::move(value);
   } else {
@@ -92,7 +92,7 @@ void set_parameter(LoadContext& context, const std::string& name, core::YamlNode
                   fmt::format("--set {}: expected {}, got {}", name, core::dimension_name(*had),
                               core::describe(value)));
   } else if (parameter->is_map()) {
-    put(*parameter, "value", std::move(value));
+    put_or_replace(*parameter, "value", std::move(value));
   } else {
     *parameter = std::move(value);
   }
@@ -104,7 +104,7 @@ void set_gain(LoadContext& context, const std::string& name, std::vector<std::st
   const std::string& last = parts.back();
   if (map == nullptr) return;
   if (parts.size() == 4 && (last == "kp" || last == "ki" || last == "kd")) {
-    put(*map, last, std::move(value));
+    put_or_replace(*map, last, std::move(value));
     return;
   }
   context.error(value.mark, "unknown-setting",
@@ -124,7 +124,7 @@ void apply(LoadContext& context, const std::string& name, const std::string& tex
     set_gain(context, name, parts, std::move(value));
   } else if (parts[0] == "planners") {
     core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
-    if (map != nullptr && parts.size() >= 3) put(*map, parts.back(), std::move(value));
+    if (map != nullptr && parts.size() >= 3) put_or_replace(*map, parts.back(), std::move(value));
     if (map != nullptr && parts.size() < 3) {
       context.error(value.mark, "unknown-setting",
                     fmt::format("--set {}: expected planners.NAME.KEY", name));

@@ -7,10 +7,6 @@
 namespace footfall::behaviors {
 namespace {
 
-const core::YamlNode& keys_of(const LoadContext& context, int state) {
-  return context.sources[static_cast<std::size_t>(state)]->keys;
-}
-
 void finish_domain(LoadContext& context, TransitionInfo& transition) {
   const auto& targets = context.behavior.targets;
   for (int k = transition.targets.first; k < transition.targets.end(); ++k) {
@@ -72,11 +68,11 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
 
 // The state's own duration: `after` + `to`.
 void load_timed(LoadContext& context, int state) {
-  const core::YamlNode* after = keys_of(context, state).find("after");
-  const core::YamlNode* to = keys_of(context, state).find("to");
+  const core::YamlNode* after = context.keys_of(state).find("after");
+  const core::YamlNode* to = context.keys_of(state).find("to");
   if (after == nullptr && to == nullptr) return;
   if (after == nullptr || to == nullptr) {
-    if (core::has_nearly(keys_of(context, state), after == nullptr ? "after" : "to")) return;
+    if (core::has_nearly(context.keys_of(state), after == nullptr ? "after" : "to")) return;
     context.error(
         (after == nullptr ? to : after)->mark, "missing-key",
         after == nullptr ? "`to` needs `after` beside it" : "`after` needs `to` beside it");
@@ -93,7 +89,7 @@ void load_timed(LoadContext& context, int state) {
 }
 
 void load_state(LoadContext& context, int state) {
-  const core::YamlNode& keys = keys_of(context, state);
+  const core::YamlNode& keys = context.keys_of(state);
   const auto actions = [&](const char* key) {
     const core::YamlNode* node = keys.find(key);
     return node == nullptr ? Range{} : load_actions(context, *node, state);

@@ -6,10 +6,10 @@
 #include "behaviors/control_merge.h"
 #include "behaviors/planner_calls.h"
 #include "behaviors/statechart.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 constexpr int kOutsideCapacity = 128;
 }  // namespace
 

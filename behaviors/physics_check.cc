@@ -8,6 +8,7 @@
 #include "behaviors/physics_configurations.h"
 #include "behaviors/physics_parts.h"
 #include "behaviors/physics_postures.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 // Different configurations that are judged; parallel regions can multiply to more than anybody
 // waits for.
 constexpr std::size_t kMaxJudged = 1000;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Contacts, tasks and internal forces as numbers: two controls that share them are one question.
 std::vector<int> signature(const Behavior& behavior, const ControlSpec& control) {
@@ -37,7 +36,8 @@ std::vector<int> signature(const Behavior& behavior, const ControlSpec& control)
 }
 
 // Contacts that the control law would take for points.
-void check_contact_types(const Behavior& behavior, const ControlSpec& control, Findings& findings) {
+void check_contact_types(const Behavior& behavior, const ControlSpec& control,
+                         PhysicsFindings& findings) {
   for (const int c : control.contacts) {
     const model::ContactDescription& contact = behavior.robot.contacts[at(c)];
     if (contact.type == model::ContactType::point) continue;
@@ -58,7 +58,7 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics) {
   model::ControlModel model(behavior.robot);
   PhysicsLaw law(behavior, model);
   const std::vector<model::State> postures = physics_postures(behavior.robot);
-  Findings findings;
+  PhysicsFindings findings;
   PhysicsContext context = {behavior, model, law, postures, findings};
   std::set<std::vector<int>> judged;
   for (const auto& [index, state] : controlling_states(behavior)) {

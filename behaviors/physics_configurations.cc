@@ -5,13 +5,13 @@
 #include <optional>
 #include <set>
 
+#include "core/index.h"
+
 namespace footfall::behaviors {
 namespace {
 
 constexpr std::size_t kMaxPairs = 4096;  // of controls that one transition is judged between
 constexpr int kMaxPassed = 32;           // states passed through in one tick
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Sums of control weights that are possible below a state, each with one of its atomic states.
 using Sums = std::map<int, int>;

@@ -8,7 +8,7 @@
 
 namespace footfall::behaviors {
 
-Findings::Finding* Findings::find(std::vector<Finding>& list, const Finding& like) {
+PhysicsFindings::Finding* PhysicsFindings::find(std::vector<Finding>& list, const Finding& like) {
   const auto found = std::find_if(list.begin(), list.end(), [&like](const Finding& f) {
     return f.mark.file == like.mark.file && f.mark.line == like.mark.line &&
            f.mark.column == like.mark.column && f.id == like.id && f.subject == like.subject;
@@ -16,8 +16,8 @@ Findings::Finding* Findings::find(std::vector<Finding>& list, const Finding& lik
   return found == list.end() ? nullptr : &*found;
 }
 
-void Findings::add(core::Severity worst, core::Mark mark, std::string_view id,
-                   std::string_view subject, std::string text) {
+void PhysicsFindings::add(core::Severity worst, core::Mark mark, std::string_view id,
+                          std::string_view subject, std::string text) {
   Finding finding = {worst, mark, std::string(id), std::string(subject), std::move(text), 1};
   if (Finding* known = find(open_, finding)) {
     ++known->hits;
@@ -26,7 +26,7 @@ void Findings::add(core::Severity worst, core::Mark mark, std::string_view id,
   }
 }
 
-void Findings::settle(int postures) {
+void PhysicsFindings::settle(int postures) {
   for (Finding& finding : open_) {
     if (finding.hits < postures) {
       finding.severity = core::Severity::warning;
@@ -44,7 +44,7 @@ void Findings::settle(int postures) {
   open_.clear();
 }
 
-void Findings::report(core::Diagnostics& diagnostics) const {
+void PhysicsFindings::report(core::Diagnostics& diagnostics) const {
   for (const Finding& finding : settled_) {
     if (finding.severity == core::Severity::error) {
       diagnostics.error(finding.mark, finding.id, finding.text);

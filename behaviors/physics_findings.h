@@ -1,6 +1,6 @@
-// Findings of the physics checks, gathered over postures and configurations before they become
-// diagnostics: a deficiency in all postures is as bad as it can be, in some it is a warning. Load
-// time only.
+// PhysicsFindings of the physics checks, gathered over postures and configurations before they
+// become diagnostics: a deficiency in all postures is as bad as it can be, in some it is a warning.
+// Load time only.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace footfall::behaviors {
 
-class Findings {
+class PhysicsFindings {
  public:
   // In the posture being judged. `subject` tells apart findings of one id at one place.
   void add(core::Severity worst, core::Mark mark, std::string_view id, std::string_view subject,

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "core/index.h"
+
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 int most_rows(const Behavior& behavior) {
   int most = 0;

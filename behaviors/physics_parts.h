@@ -19,7 +19,7 @@ struct PhysicsContext {
   model::ControlModel& model;  // updated to a posture by whoever asks for one
   PhysicsLaw& law;
   const std::vector<model::State>& postures;  // the first is the nominal one
-  Findings& findings;
+  PhysicsFindings& findings;
 };
 
 // `right_foot and left_foot`, or `no contact`.

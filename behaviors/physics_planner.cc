@@ -16,13 +16,12 @@
 
 #include "behaviors/physics_parts.h"
 #include "behaviors/planner_calls.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
 
 using core::Severity;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 class PlannerCheck {
  public:

@@ -11,11 +11,10 @@
 
 #include "behaviors/physics_configurations.h"
 #include "behaviors/physics_parts.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace footfall::behaviors {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 int parameter_of_slot(const Behavior& behavior, int slot) {
   for (std::size_t k = 0; k < behavior.parameters.size(); ++k) {

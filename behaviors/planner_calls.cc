@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace footfall::behaviors {
 namespace {
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 constexpr std::size_t kEventsPerInvoke = 64;
 }  // namespace
 

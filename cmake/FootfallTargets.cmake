@@ -5,6 +5,8 @@ function(footfall_set_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # g++ 12 reports std::string operator+ falsely (GCC bug 105651)
+    # Files compiled together: a hidden class with a member of an unnamed namespace is one file's own all the same.
+    $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
     $<$<BOOL:${FOOTFALL_WERROR}>:-Werror>)
 endfunction()
 

@@ -8,6 +8,9 @@
 
 namespace footfall::core {
 
+// A space or tab.
+constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
 // Exponents of metre, kilogram and second; an angle is dimensionless (rad = 1).
 struct Dimension {
   std::int8_t m = 0;

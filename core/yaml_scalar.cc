@@ -7,12 +7,6 @@
 #include "core/yaml_tokens.h"
 
 namespace footfall::core {
-namespace {
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-}  // namespace
-
 bool is_plain_word(std::string_view text) {
   static constexpr std::array kReserved = {"true", "false", "on", "off", "yes",
                                            "no",   "null",  "y",  "n"};

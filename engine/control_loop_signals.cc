@@ -3,12 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.h"
 #include "engine/control_loop.h"
 
 namespace footfall::engine {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 template <std::size_t N>
 void put(core::SignalTable& table, int first, const std::array<double, N>& values) noexcept {

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/index.h"
 #include "lab/version.h"
 
 namespace footfall::lab {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::string names_of(const behaviors::Chart& chart, const behaviors::Range& targets) {
   std::string names;

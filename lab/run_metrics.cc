@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace footfall::lab {
 namespace {
 
 constexpr std::size_t kRecent = 51;  // 50 whole steps
 constexpr std::size_t kGoalSteps = 10;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double wrap(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 

@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "core/index.h"
 #include "core/mujoco_errors.h"
 #include "model/mjcf.h"
 #include "sim/scene.h"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr int kGround = -1;
 constexpr int kOtherBody = -2;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // The foot geom of a contact: the collision sphere centred at its site.
 int foot_geom(const mjModel* m, const mjData* d, int site) {

@@ -3,13 +3,9 @@
 
 #include <algorithm>
 
+#include "core/index.h"
+
 namespace footfall::tasks {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 TaskMemory::TaskMemory(int instances, int joints)
     : stride_(std::max(6, joints)),
       integral_(at(instances * stride_), 0.0),

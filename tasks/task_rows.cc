@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/index.h"
 #include "tasks/task_law.h"
 
 namespace footfall::tasks {
@@ -10,8 +11,6 @@ namespace {
 
 using Vector3 = std::array<double, 3>;
 using Matrix3 = std::array<double, 9>;  // row-major
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // R = Rz(yaw) Ry(pitch) Rx(roll).
 Matrix3 rotation_of(double roll, double pitch, double yaw) noexcept {

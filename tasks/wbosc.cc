@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace footfall::tasks {
 namespace {
-
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 // A row of a matrix into a column of a row-major block.
 void scatter(int n, const double* __restrict from, double* __restrict to, int stride) noexcept {
@@ -26,53 +26,53 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   const int n = sizes.nv;
   const int columns = sizes.contact_rows + sizes.na + sizes.task_rows + 1;
   stride_ = (columns + 1) & ~1;
-  x_.assign(size(n * stride_), 0.0);
-  problem_.Js.assign(size(sizes.contact_rows * n), 0.0);
-  problem_.Js_bias.assign(size(sizes.contact_rows), 0.0);
-  problem_.J.assign(size(sizes.task_rows * n), 0.0);
-  problem_.J_bias.assign(size(sizes.task_rows), 0.0);
-  problem_.u.assign(size(sizes.task_rows), 0.0);
-  problem_.weight.assign(size(sizes.task_rows), 1.0);
-  problem_.level_end.assign(size(sizes.levels), 0);
-  problem_.external.assign(size(n), 0.0);
-  problem_.W_int.assign(size(sizes.internal_rows * sizes.contact_rows), 0.0);
-  problem_.F_int.assign(size(sizes.internal_rows), 0.0);
-  problem_.K_F.assign(size(sizes.internal_rows), 0.0);
-  solution_.tau.assign(size(sizes.na), 0.0);
-  solution_.f.assign(size(sizes.contact_rows), 0.0);
-  solution_.achieved.assign(size(sizes.task_rows), 0.0);
-  solution_.internal.assign(size(sizes.internal_rows), 0.0);
-  solution_.internal_measured.assign(size(sizes.internal_rows), 0.0);
-  solution_.level_rank.assign(size(sizes.levels), 0);
-  solution_.level_condition.assign(size(sizes.levels), 1.0);
-  column_norm2_.assign(size(stride_), 0.0);
-  contact_order_.assign(size(columns), 0);
-  actuator_order_.assign(size(columns), 0);
-  level_order_.assign(size(columns), 0);
-  a1_.assign(size(sizes.contact_rows), 0.0);
-  z_.assign(size(2 * n), 0.0);
-  rhs_.assign(size(std::max(sizes.task_rows, sizes.internal_rows)), 0.0);
-  y_.assign(size(std::max({n, sizes.task_rows, sizes.contact_rows, sizes.internal_rows})), 0.0);
-  free_bias_.assign(size(sizes.task_rows), 0.0);
-  reflectors_.assign(size(n * n), 0.0);
-  reflector_beta_.assign(size(n), 0.0);
-  null_reflectors_.assign(size(sizes.na * sizes.na), 0.0);
-  null_beta_.assign(size(sizes.na), 0.0);
-  V_.assign(size(sizes.na * sizes.na), 0.0);
-  V_beta_.assign(size(sizes.na), 0.0);
-  T_.assign(size(sizes.na * sizes.na), 0.0);
-  N_.assign(size(sizes.na * sizes.na), 0.0);
-  Vc_.assign(size(sizes.contact_rows * n), 0.0);
-  Vc_beta_.assign(size(n), 0.0);
-  Tc_.assign(size(sizes.contact_rows * n), 0.0);
-  G_.assign(size(sizes.na * sizes.internal_rows), 0.0);
-  alpha_.assign(size(sizes.na), 0.0);
-  internal_norm2_.assign(size(sizes.internal_rows), 0.0);
-  internal_weight_.assign(size(sizes.internal_rows), 1.0);
-  internal_order_.assign(size(sizes.internal_rows), 0);
-  forces_.assign(size(2 * sizes.contact_rows + sizes.na), 0.0);
+  x_.assign(extent(n * stride_), 0.0);
+  problem_.Js.assign(extent(sizes.contact_rows * n), 0.0);
+  problem_.Js_bias.assign(extent(sizes.contact_rows), 0.0);
+  problem_.J.assign(extent(sizes.task_rows * n), 0.0);
+  problem_.J_bias.assign(extent(sizes.task_rows), 0.0);
+  problem_.u.assign(extent(sizes.task_rows), 0.0);
+  problem_.weight.assign(extent(sizes.task_rows), 1.0);
+  problem_.level_end.assign(extent(sizes.levels), 0);
+  problem_.external.assign(extent(n), 0.0);
+  problem_.W_int.assign(extent(sizes.internal_rows * sizes.contact_rows), 0.0);
+  problem_.F_int.assign(extent(sizes.internal_rows), 0.0);
+  problem_.K_F.assign(extent(sizes.internal_rows), 0.0);
+  solution_.tau.assign(extent(sizes.na), 0.0);
+  solution_.f.assign(extent(sizes.contact_rows), 0.0);
+  solution_.achieved.assign(extent(sizes.task_rows), 0.0);
+  solution_.internal.assign(extent(sizes.internal_rows), 0.0);
+  solution_.internal_measured.assign(extent(sizes.internal_rows), 0.0);
+  solution_.level_rank.assign(extent(sizes.levels), 0);
+  solution_.level_condition.assign(extent(sizes.levels), 1.0);
+  column_norm2_.assign(extent(stride_), 0.0);
+  contact_order_.assign(extent(columns), 0);
+  actuator_order_.assign(extent(columns), 0);
+  level_order_.assign(extent(columns), 0);
+  a1_.assign(extent(sizes.contact_rows), 0.0);
+  z_.assign(extent(2 * n), 0.0);
+  rhs_.assign(extent(std::max(sizes.task_rows, sizes.internal_rows)), 0.0);
+  y_.assign(extent(std::max({n, sizes.task_rows, sizes.contact_rows, sizes.internal_rows})), 0.0);
+  free_bias_.assign(extent(sizes.task_rows), 0.0);
+  reflectors_.assign(extent(n * n), 0.0);
+  reflector_beta_.assign(extent(n), 0.0);
+  null_reflectors_.assign(extent(sizes.na * sizes.na), 0.0);
+  null_beta_.assign(extent(sizes.na), 0.0);
+  V_.assign(extent(sizes.na * sizes.na), 0.0);
+  V_beta_.assign(extent(sizes.na), 0.0);
+  T_.assign(extent(sizes.na * sizes.na), 0.0);
+  N_.assign(extent(sizes.na * sizes.na), 0.0);
+  Vc_.assign(extent(sizes.contact_rows * n), 0.0);
+  Vc_beta_.assign(extent(n), 0.0);
+  Tc_.assign(extent(sizes.contact_rows * n), 0.0);
+  G_.assign(extent(sizes.na * sizes.internal_rows), 0.0);
+  alpha_.assign(extent(sizes.na), 0.0);
+  internal_norm2_.assign(extent(sizes.internal_rows), 0.0);
+  internal_weight_.assign(extent(sizes.internal_rows), 1.0);
+  internal_order_.assign(extent(sizes.internal_rows), 0);
+  forces_.assign(extent(2 * sizes.contact_rows + sizes.na), 0.0);
   const int rows = std::max(sizes.task_rows, sizes.internal_rows);
-  work_.assign(size(rows * (n + 2) + 4 * (stride_ + n + rows + sizes.contact_rows)), 0.0);
+  work_.assign(extent(rows * (n + 2) + 4 * (stride_ + n + rows + sizes.contact_rows)), 0.0);
 }
 
 void Wbosc::solve() noexcept {
@@ -101,7 +101,7 @@ void Wbosc::gather() noexcept {
   for (int r = 0; r < n; ++r) {
     double* x = row(r);
     for (int j = col_u_; j < col_t_; ++j) x[j] = 0.0;
-    x[col_h_] = p.bias[r] - p.external[size(r)];
+    x[col_h_] = p.bias[r] - p.external[extent(r)];
   }
   for (int j = 0; j < na; ++j) row(p.actuated[j])[col_u_ + j] = 1.0;
   model::whiten(p.factor, x_.data(), columns_, stride_);
@@ -116,9 +116,9 @@ void Wbosc::gather() noexcept {
     *reinterpret_cast<model::DoublePair*>(norm2 + c) = sum;
   }
   for (int c = 0; c < columns_; ++c) {
-    contact_order_[size(c)] = c;
-    actuator_order_[size(c)] = c - col_u_;
-    level_order_[size(c)] = c - col_t_;
+    contact_order_[extent(c)] = c;
+    actuator_order_[extent(c)] = c - col_u_;
+    level_order_[extent(c)] = c - col_t_;
   }
   level_reflectors_ = 0;
 }
@@ -133,9 +133,9 @@ void Wbosc::reduce_contacts() noexcept {
   solution_.contact_rank = k;
   if (k == problem_.contact_rows) {
     for (int i = 0; i < k; ++i) {
-      double value = -problem_.Js_bias[size(contact_order_[size(i)])];
-      for (int q = 0; q < i; ++q) value -= x.row(q)[i] * a1_[size(q)];
-      a1_[size(i)] = value / x.row(i)[i];
+      double value = -problem_.Js_bias[extent(contact_order_[extent(i)])];
+      for (int q = 0; q < i; ++q) value -= x.row(q)[i] * a1_[extent(q)];
+      a1_[extent(i)] = value / x.row(i)[i];
     }
   } else {
     reduce_redundant_contacts();
@@ -162,12 +162,12 @@ void Wbosc::reduce_redundant_contacts() noexcept {
   Reflectors keep = {Vc_.data(), Vc_beta_.data(), sizes_.contact_rows, 0};
   orthogonal_factor(t, nc, k, &keep);
   double* wanted = work_.data();
-  for (int c = 0; c < nc; ++c) wanted[c] = -problem_.Js_bias[size(contact_order_[size(c)])];
+  for (int c = 0; c < nc; ++c) wanted[c] = -problem_.Js_bias[extent(contact_order_[extent(c)])];
   rotate(keep, nc, wanted);
   for (int i = k - 1; i >= 0; --i) {
     double value = wanted[i];
-    for (int q = i + 1; q < k; ++q) value -= t.row(i)[q] * a1_[size(q)];
-    a1_[size(i)] = value / t.row(i)[i];
+    for (int q = i + 1; q < k; ++q) value -= t.row(i)[q] * a1_[extent(q)];
+    a1_[extent(i)] = value / t.row(i)[i];
   }
 }
 
@@ -202,16 +202,16 @@ void Wbosc::solve_levels() noexcept {
   const int rows = problem_.task_rows;
   std::copy_n(problem_.J_bias.data(), rows, free_bias_.data());
   for (int q = 0; q < sizes_.nv; ++q) {
-    const double weight = q < k ? a1_[size(q)] : -row(q)[col_h_];
+    const double weight = q < k ? a1_[extent(q)] : -row(q)[col_h_];
     add_scaled(rows, weight, row(q) + col_t_, free_bias_.data());
   }
-  for (int i = 0; i < rows; ++i) rhs_[size(i)] = problem_.u[size(i)] - free_bias_[size(i)];
+  for (int i = 0; i < rows; ++i) rhs_[extent(i)] = problem_.u[extent(i)] - free_bias_[extent(i)];
   level_rank_sum_ = 0;
   std::fill_n(z_.data(), sizes_.nv, 0.0);
   int first = 0;
   for (int level = 0; level < problem_.levels; ++level) {
-    solve_level(level, first, problem_.level_end[size(level)]);
-    first = problem_.level_end[size(level)];
+    solve_level(level, first, problem_.level_end[extent(level)]);
+    first = problem_.level_end[extent(level)];
   }
 }
 
@@ -230,9 +230,9 @@ void Wbosc::solve_level(int level, int first, int last) noexcept {
   const LevelScratch scratch = {y_.data(), dense, work_.data()};
   const int rank = solve_cascade_level(x, range, rule, level_order_.data(), column_norm2_.data(),
                                        rhs_.data(), problem_.weight.data(), z_.data(), &keep,
-                                       &solution_.level_condition[size(level)], scratch);
+                                       &solution_.level_condition[extent(level)], scratch);
   level_reflectors_ = keep.count;
-  solution_.level_rank[size(level)] = rank;
+  solution_.level_rank[extent(level)] = rank;
   level_rank_sum_ += rank;
 }
 
@@ -254,14 +254,14 @@ void Wbosc::torque_from_range() noexcept {
   } else {
     for (int i = 0; i < r; ++i) {  // Tᵀ y = c
       double value = c[i];
-      for (int q = 0; q < i; ++q) value -= T_[size(q * r + i)] * tau_p[q];
-      tau_p[i] = value / T_[size(i * r + i)];
+      for (int q = 0; q < i; ++q) value -= T_[extent(q * r + i)] * tau_p[q];
+      tau_p[i] = value / T_[extent(i * r + i)];
     }
     std::fill(tau_p + r, tau_p + na, 0.0);
     rotate_back(actuation_rotation(), na, tau_p);
   }
   for (int j = 0; j < na; ++j) {
-    solution_.tau[size(actuator_order_[size(col_u_ + j)])] = tau_p[j];
+    solution_.tau[extent(actuator_order_[extent(col_u_ + j)])] = tau_p[j];
   }
 }
 
@@ -285,9 +285,9 @@ void Wbosc::finish() noexcept {
   for (int i = 0; i < problem_.internal_rows; ++i) {
     double value = 0.0;
     for (int c = 0; c < problem_.contact_rows; ++c) {
-      value += problem_.W_int[size(i * problem_.contact_rows + c)] * solution_.f[size(c)];
+      value += problem_.W_int[extent(i * problem_.contact_rows + c)] * solution_.f[extent(c)];
     }
-    solution_.internal[size(i)] = value;
+    solution_.internal[extent(i)] = value;
   }
   double* c = z_.data() + sizes_.nv;  // Zᵀ B τ, then in the levels' coordinates
   const int* order = actuator_order_.data() + col_u_;
@@ -302,7 +302,7 @@ void Wbosc::finish() noexcept {
   std::fill_n(gained, problem_.task_rows, 0.0);
   for (int q = 0; q < r; ++q) add_scaled(problem_.task_rows, c[q], row(k + q) + col_t_, gained);
   for (int t = 0; t < problem_.task_rows; ++t) {
-    const std::size_t original = size(level_order_[size(col_t_ + t)]);
+    const std::size_t original = extent(level_order_[extent(col_t_ + t)]);
     solution_.achieved[original] = free_bias_[original] + gained[t];
   }
 }

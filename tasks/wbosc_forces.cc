@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "core/index.h"
 #include "tasks/wbosc.h"
 
 namespace footfall::tasks {
-namespace {
-
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
-}  // namespace
-
 // f = R⁻¹ (a₁ - B₁ τ + h₁): ground on robot; of least norm where contacts are redundant.
 void Wbosc::contact_forces(const double* tau, double* f) noexcept {
   const int k = solution_.contact_rank;
@@ -24,7 +19,7 @@ void Wbosc::contact_forces(const double* tau, double* f) noexcept {
   for (int j = 0; j < na; ++j) tau_p[j] = tau[order[j]];
   for (int i = 0; i < k; ++i) {
     const double* x = row(i) + col_u_;
-    double value = a1_[size(i)] + row(i)[col_h_];
+    double value = a1_[extent(i)] + row(i)[col_h_];
     for (int j = 0; j < na; ++j) value -= x[j] * tau_p[j];
     y[i] = value;
   }
@@ -37,13 +32,13 @@ void Wbosc::contact_forces(const double* tau, double* f) noexcept {
   } else {
     for (int i = 0; i < k; ++i) {  // Tᵀ s = y
       double value = y[i];
-      for (int q = 0; q < i; ++q) value -= Tc_[size(q * k + i)] * fp[q];
-      fp[i] = value / Tc_[size(i * k + i)];
+      for (int q = 0; q < i; ++q) value -= Tc_[extent(q * k + i)] * fp[q];
+      fp[i] = value / Tc_[extent(i * k + i)];
     }
     std::fill(fp + k, fp + nc, 0.0);
     rotate_back(contact_rotation(), nc, fp);
   }
-  for (int i = 0; i < nc; ++i) f[contact_order_[size(i)]] = fp[i];
+  for (int i = 0; i < nc; ++i) f[contact_order_[extent(i)]] = fp[i];
 }
 
 // In the null space of B torques only change contact forces: W_int f(τ + N α) = F_int, named rows
@@ -62,15 +57,15 @@ void Wbosc::add_internal_forces() noexcept {
   std::fill_n(internal_norm2_.data(), rows, 0.0);
   for (int q = 0; q < nulls; ++q) {  // column q of G = W_int ∂f/∂α_q, stored transposed
     for (int j = 0; j < na; ++j) {
-      const int actuator = actuator_order_[size(col_u_ + j)];
-      probe[actuator] = solution_.tau[size(actuator)] + N_[size(q * na + j)];
+      const int actuator = actuator_order_[extent(col_u_ + j)];
+      probe[actuator] = solution_.tau[extent(actuator)] + N_[extent(q * na + j)];
     }
     contact_forces(probe, f1);
     for (int i = 0; i < rows; ++i) {
       double value = 0.0;
-      for (int c = 0; c < nc; ++c) value += problem_.W_int[size(i * nc + c)] * (f1[c] - f0[c]);
-      G_[size(q * rows + i)] = value;
-      internal_norm2_[size(i)] += value * value;
+      for (int c = 0; c < nc; ++c) value += problem_.W_int[extent(i * nc + c)] * (f1[c] - f0[c]);
+      G_[extent(q * rows + i)] = value;
+      internal_norm2_[extent(i)] += value * value;
     }
   }
   if (problem_.tau_measured) contact_forces(problem_.tau_measured, f1);
@@ -78,14 +73,14 @@ void Wbosc::add_internal_forces() noexcept {
     double now = 0.0;
     double measured = 0.0;
     for (int c = 0; c < nc; ++c) {
-      now += problem_.W_int[size(i * nc + c)] * f0[c];
-      measured += problem_.W_int[size(i * nc + c)] * f1[c];
+      now += problem_.W_int[extent(i * nc + c)] * f0[c];
+      measured += problem_.W_int[extent(i * nc + c)] * f1[c];
     }
-    double wanted = problem_.F_int[size(i)];
-    if (problem_.tau_measured) wanted += problem_.K_F[size(i)] * (wanted - measured);
-    solution_.internal_measured[size(i)] = problem_.tau_measured ? measured : now;
-    rhs_[size(i)] = wanted - now;
-    internal_order_[size(i)] = i;
+    double wanted = problem_.F_int[extent(i)];
+    if (problem_.tau_measured) wanted += problem_.K_F[extent(i)] * (wanted - measured);
+    solution_.internal_measured[extent(i)] = problem_.tau_measured ? measured : now;
+    rhs_[extent(i)] = wanted - now;
+    internal_order_[extent(i)] = i;
   }
   if (nulls > 0) add_null_torque(nulls, rows);
 }
@@ -111,8 +106,8 @@ void Wbosc::add_null_torque(int nulls, int rows) noexcept {
   rotate_back(keep, nulls, alpha_.data());
   for (int j = 0; j < na; ++j) {
     double value = 0.0;
-    for (int q = 0; q < nulls; ++q) value += N_[size(q * na + j)] * alpha_[size(q)];
-    solution_.tau[size(actuator_order_[size(col_u_ + j)])] += value;
+    for (int q = 0; q < nulls; ++q) value += N_[extent(q * na + j)] * alpha_[extent(q)];
+    solution_.tau[extent(actuator_order_[extent(col_u_ + j)])] += value;
   }
 }
 
@@ -123,10 +118,10 @@ void Wbosc::effective_inertia(int first, int last, double* lambda) const {
   const int r = solution_.actuation_rank;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
   for (int a = 0; a < problem_.task_rows; ++a) {
-    const int i = level_order_[size(col_t_ + a)] - first;
+    const int i = level_order_[extent(col_t_ + a)] - first;
     if (i < 0 || i >= m) continue;
     for (int b = 0; b < problem_.task_rows; ++b) {
-      const int j = level_order_[size(col_t_ + b)] - first;
+      const int j = level_order_[extent(col_t_ + b)] - first;
       if (j < 0 || j >= m) continue;
       for (int q = 0; q < r; ++q) gram(i, j) += row(k + q)[col_t_ + a] * row(k + q)[col_t_ + b];
     }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.h"
+
 namespace footfall::tasks {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 WboscSizes solver_sizes(const model::ControlModel& model, const ControllerSizes& sizes) {
   const int pairs = sizes.contacts * (sizes.contacts - 1) / 2;

@@ -92,34 +92,34 @@ TEST(CheckTransitions, TheTimeOfAnInnerStateIsNotThatOfTheOuter) {
             "");
 }
 
-std::string regions(const std::string& l, const std::string& more = "") {
+std::string two_regions(const std::string& l, const std::string& more = "") {
   return machine("  states:\n    p:\n      type: parallel\n      states:\n        l: {" + l +
                  "states: {w: {after: 1 s, to: x}, x: {after: 1 s, to: w}}}\n" +
                  "        r: {states: {y: {after: 1 s, to: z}, z: {after: 1 s, to: y}}}\n" + more);
 }
 TEST(CheckTransitions, ARegionThatReEntersTheWholeParallelIsToldOfInternal) {
-  EXPECT_EQ(problems(regions("transitions: [{on: e, to: w}], ")),
+  EXPECT_EQ(problems(two_regions("transitions: [{on: e, to: w}], ")),
             "b.yaml:10:39: warning: this leaves and re-enters all regions of 'p': `internal: true` "
             "keeps it inside 'l'\n");
-  EXPECT_EQ(problems(regions("transitions: [{on: e, to: w, internal: true}], ")), "");
+  EXPECT_EQ(problems(two_regions("transitions: [{on: e, to: w, internal: true}], ")), "");
 }
 TEST(CheckTransitions, OtherWaysToReEnterAllRegionsAreSaidToo) {
-  EXPECT_EQ(problems(regions("transitions: [{on: e, to: l}], ")),
+  EXPECT_EQ(problems(two_regions("transitions: [{on: e, to: l}], ")),
             "b.yaml:10:39: warning: this leaves and re-enters all regions of 'p': only a target "
             "inside the source's own region lets the others go on\n");
-  EXPECT_EQ(problems(regions("transitions: [{on: e, to: z}], ")),
+  EXPECT_EQ(problems(two_regions("transitions: [{on: e, to: z}], ")),
             "b.yaml:10:39: warning: this leaves and re-enters all regions of 'p': only a target "
             "inside the source's own region lets the others go on\n");
-  EXPECT_EQ(problems(regions("", "      transitions: [{on: e, to: x}]\n")),
+  EXPECT_EQ(problems(two_regions("", "      transitions: [{on: e, to: x}]\n")),
             "b.yaml:12:33: warning: this leaves and re-enters all regions of 'p': give it to the "
             "region that it is for, with `internal: true`\n");
 }
 TEST(CheckTransitions, WhoNamesTheParallelOrAllItsRegionsMeansIt) {
-  EXPECT_EQ(problems(regions("transitions: [{on: e, to: p}], ")), "");
-  EXPECT_EQ(problems(regions("transitions: [{on: e, to: [x, z]}], ")), "");
-  EXPECT_EQ(problems(regions("transitions: [{on: e, to: q}], ", "    q: {after: 1 s, to: x}\n")),
-            "");
-  EXPECT_EQ(problems(regions("after: 9 s, to: q, ", "    q: {after: 1 s, to: p}\n")), "");
+  EXPECT_EQ(problems(two_regions("transitions: [{on: e, to: p}], ")), "");
+  EXPECT_EQ(problems(two_regions("transitions: [{on: e, to: [x, z]}], ")), "");
+  EXPECT_EQ(
+      problems(two_regions("transitions: [{on: e, to: q}], ", "    q: {after: 1 s, to: x}\n")), "");
+  EXPECT_EQ(problems(two_regions("after: 9 s, to: q, ", "    q: {after: 1 s, to: p}\n")), "");
 }
 
 TEST(CheckLoops, ACycleWithoutTimeOrConditionIsFound) {

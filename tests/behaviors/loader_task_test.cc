@@ -74,7 +74,9 @@ TEST(LoaderTask, LimitsAndWeightsAreByAxis) {
   ASSERT_EQ(b->axes.size(), 2u);
   EXPECT_EQ(b->axes[0].acceleration_limit, -1);
   EXPECT_GE(b->axes[1].acceleration_limit, 0);
-  const auto value = [&](int expression) { return evaluate(b->expressions, expression, {}); };
+  const auto value = [&](int expression) {
+    return behaviors::evaluate(b->expressions, expression, {});
+  };
   EXPECT_EQ(value(b->axes[1].acceleration_limit), 2.0);
   EXPECT_EQ(value(b->axes[1].integral_limit), 2.0);
   EXPECT_EQ(value(b->axes[0].weight), 3.0);
@@ -94,7 +96,7 @@ TEST(LoaderTask, GainsMayBeParametersOrExpressions) {
   EXPECT_GE(b->axes[0].computed[0], 0);
   EXPECT_EQ(b->find_parameter("gains..f.kp"), -1);
   for (const auto& parameter : b->parameters) EXPECT_FALSE(parameter.gain) << parameter.name;
-  EXPECT_EQ(evaluate(b->expressions, b->axes[1].computed[1], {}), 3.0);
+  EXPECT_EQ(behaviors::evaluate(b->expressions, b->axes[1].computed[1], {}), 3.0);
 }
 TEST(LoaderTask, GainsThatAreExpressionsHaveTheirDimensionAndRange) {
   EXPECT_EQ(problems(with("{f: {type: com_position, axes: [z], reference: 0, "

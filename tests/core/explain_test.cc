@@ -89,19 +89,19 @@ TEST_F(ExplainTest, ATableKnowsWhatIsNotWritten) {
   static constexpr KeySpec kInner[] = {key("z", any_quantity(), "how long").otherwise("7 ms"),
                                        key("w", boolean(), "whether")};
   static constexpr KeyTable kInnerTable{.id = "y", .doc = "", .keys = kInner};
-  static constexpr KeySpec kRows[] = {key("x", any_quantity(), "a number"),
-                                      key("y", map_of(kInnerTable), "more")};
-  static constexpr KeyTable kMap{.id = "m", .doc = "", .keys = kRows};
+  static constexpr KeySpec kExplainRows[] = {key("x", any_quantity(), "a number"),
+                                             key("y", map_of(kInnerTable), "more")};
+  static constexpr KeyTable kMap{.id = "m", .doc = "", .keys = kExplainRows};
   static constexpr KeySpec kRoot[] = {key("m", map_of(kMap), "a map")};
-  static constexpr KeyTable kTable{.id = "root", .doc = "", .keys = kRoot};
-  const Explanation there = explain(root_, history_, &kTable, "m.y.z");
+  static constexpr KeyTable kExplainTable{.id = "root", .doc = "", .keys = kRoot};
+  const Explanation there = explain(root_, history_, &kExplainTable, "m.y.z");
   ASSERT_NE(there.key, nullptr);
   EXPECT_EQ(there.key->doc, "how long");
-  const Explanation absent = explain(root_, history_, &kTable, "m.y.w");
+  const Explanation absent = explain(root_, history_, &kExplainTable, "m.y.w");
   EXPECT_TRUE(absent.values.empty());
   EXPECT_EQ(absent.problem, "");
   EXPECT_EQ(absent.key->doc, "whether");
-  EXPECT_THAT(explain(root_, history_, &kTable, "m.y.ww").problem, HasSubstr("'w'"));
+  EXPECT_THAT(explain(root_, history_, &kExplainTable, "m.y.ww").problem, HasSubstr("'w'"));
 }
 
 TEST_F(ExplainTest, AnEditIsADifference) {

@@ -22,19 +22,19 @@ TEST(Pacer, SleepsToTheEndOfEachPeriod) {
 }
 
 TEST(Pacer, AnOverrunIsCountedAndSkipsToTheNextBoundary) {
-  constexpr auto kPeriod = milliseconds(500);
+  constexpr auto kPause = milliseconds(500);
   Pacer pacer(0.5);
   const auto before = Clock::now();
   ASSERT_TRUE(pacer.wait());  // boundaries are whole periods after this call
-  std::this_thread::sleep_for(kPeriod + milliseconds(150));
+  std::this_thread::sleep_for(kPause + milliseconds(150));
   EXPECT_FALSE(pacer.wait());  // late: it does not wait
   const auto late = Clock::now();
   EXPECT_EQ(pacer.overruns(), 1);
   ASSERT_TRUE(pacer.wait());
   const auto next = Clock::now();
   // Boundary 3 of the clock, neither a burst (2) nor one too many (4).
-  EXPECT_GE(next - before, 3 * kPeriod);
-  EXPECT_LT(next - late, kPeriod);
+  EXPECT_GE(next - before, 3 * kPause);
+  EXPECT_LT(next - late, kPause);
   EXPECT_EQ(pacer.overruns(), 1);
 }
 

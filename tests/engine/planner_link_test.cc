@@ -7,6 +7,7 @@
 
 #include "tests/support/fake_robot.h"
 #include "tests/support/hume.h"
+#include "tests/support/no_measure.h"
 
 namespace footfall::tests {
 namespace {
@@ -21,11 +22,6 @@ std::string asking(const std::string& filter) {
          "foot, at: 0 ms, every: 0.6 ms, with: {stance: right_foot, swing: left_foot, switch_in: "
          "0 s}}]\n";
 }
-
-class NoMeasure final : public behaviors::Measure {
- public:
-  double position(tasks::TaskType, int, int) const noexcept override { return 0.0; }
-};
 
 struct Link {
   explicit Link(int latency, const std::string& filter = "")

@@ -10,14 +10,10 @@
 
 #include "behaviors/loader.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/no_measure.h"
 
 namespace footfall::tests {
 namespace {
-
-class NoMeasure final : public behaviors::Measure {
- public:
-  double position(tasks::TaskType, int, int) const noexcept override { return 0.0; }
-};
 
 // A statechart with a script beside it, in a folder of its own.
 class Scripted {

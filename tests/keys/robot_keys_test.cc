@@ -13,21 +13,21 @@
 namespace footfall::tests {
 namespace {
 
-const std::string kPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/robot.yaml";
+const std::string kRobotPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/robot.yaml";
 
 TEST(EveryKey, OfARobotIsInAFileThatLoads) {
   core::Diagnostics diagnostics;
-  model::load_robot(kPath, diagnostics);
+  model::load_robot(kRobotPath, diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "");
-  const core::YamlNode root = core::load_yaml_file(kPath, diagnostics);
+  const core::YamlNode root = core::load_yaml_file(kRobotPath, diagnostics);
   EXPECT_EQ(unused_keys(model::kRobotFile, key_uses(model::kRobotFile, root)),
             std::vector<std::string>{"robot.base"});
 }
 TEST(EveryKey, OfARobotIsReadSoThatAWrongValueIsRefused) {
   core::Diagnostics diagnostics;
-  const core::YamlNode root = core::load_yaml_file(kPath, diagnostics);
+  const core::YamlNode root = core::load_yaml_file(kRobotPath, diagnostics);
   std::ostringstream text;
-  text << std::ifstream(kPath).rdbuf();
+  text << std::ifstream(kRobotPath).rdbuf();
   const std::string folder = testing::TempDir() + "/tests/keys";
   std::filesystem::create_directories(folder);
   std::filesystem::copy(

@@ -14,21 +14,21 @@ namespace footfall::tests {
 namespace {
 
 const std::string kFolder = std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/";
-const std::string kPath = kFolder + "scenario.yaml";
+const std::string kScenarioPath = kFolder + "scenario.yaml";
 
 TEST(EveryKey, OfAScenarioIsInAFileThatLoads) {
   core::Diagnostics diagnostics;
-  lab::load_scenario(kPath, {{FOOTFALL_SOURCE_DIR}}, diagnostics);
+  lab::load_scenario(kScenarioPath, {{FOOTFALL_SOURCE_DIR}}, diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "");
-  const core::YamlNode root = core::load_yaml_file(kPath, diagnostics);
+  const core::YamlNode root = core::load_yaml_file(kScenarioPath, diagnostics);
   EXPECT_EQ(unused_keys(lab::kScenarioFile, key_uses(lab::kScenarioFile, root)),
             std::vector<std::string>{"scenario.base"});
 }
 TEST(EveryKey, OfAScenarioIsReadSoThatAWrongValueIsRefused) {
   core::Diagnostics diagnostics;
-  const core::YamlNode root = core::load_yaml_file(kPath, diagnostics);
+  const core::YamlNode root = core::load_yaml_file(kScenarioPath, diagnostics);
   std::ostringstream text;
-  text << std::ifstream(kPath).rdbuf();
+  text << std::ifstream(kScenarioPath).rdbuf();
   const std::string content = text.str();
   const std::string behavior = "scenario_behavior.yaml";
   for (const KeyUse& use : key_uses(lab::kScenarioFile, root)) {

@@ -12,21 +12,21 @@
 namespace footfall::tests {
 namespace {
 
-const std::string kPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/world.yaml";
+const std::string kWorldPath = std::string(FOOTFALL_SOURCE_DIR) + "/tests/keys/world.yaml";
 
 TEST(EveryKey, OfAWorldIsInAFileThatLoads) {
   core::Diagnostics diagnostics;
-  sim::load_world(kPath, diagnostics);
+  sim::load_world(kWorldPath, diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "");
-  const core::YamlNode root = core::load_yaml_file(kPath, diagnostics);
+  const core::YamlNode root = core::load_yaml_file(kWorldPath, diagnostics);
   EXPECT_EQ(unused_keys(sim::kWorldFile, key_uses(sim::kWorldFile, root)),
             std::vector<std::string>{"world.base"});
 }
 TEST(EveryKey, OfAWorldIsReadSoThatAWrongValueIsRefused) {
   core::Diagnostics diagnostics;
-  const core::YamlNode root = core::load_yaml_file(kPath, diagnostics);
+  const core::YamlNode root = core::load_yaml_file(kWorldPath, diagnostics);
   std::ostringstream text;
-  text << std::ifstream(kPath).rdbuf();
+  text << std::ifstream(kWorldPath).rdbuf();
   for (const KeyUse& use : key_uses(sim::kWorldFile, root)) {
     if (!use.value->is_scalar()) continue;
     const std::string path = testing::TempDir() + "/broken_world.yaml";

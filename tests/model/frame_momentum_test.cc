@@ -22,7 +22,7 @@ using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 // Central differences with h = 1e-4: h²/6 times third derivatives (angular speed cubed, up to
 // 40 rad³/s³) is below 1e-7; round-off 1e-16/h far below.
 constexpr double kStep = 1e-4;
-constexpr double kDifference = 1e-6;
+constexpr double kFrameDifference = 1e-6;
 
 class FramesOfHume : public testing::Test {
  protected:
@@ -61,9 +61,11 @@ TEST_F(FramesOfHume, AFramesAngularVelocityTurnsItsRotation) {
       const Vector3d w_after = jacobian(model_.frame(point).angular) * velocity_of(s);
       model_.update(integrated(s, -kStep, 6));
       const Eigen::AngleAxisd turn(after * rotation(point).transpose());
-      EXPECT_LE((turn.axis() * turn.angle() / (2 * kStep) - w).cwiseAbs().maxCoeff(), kDifference);
+      EXPECT_LE((turn.axis() * turn.angle() / (2 * kStep) - w).cwiseAbs().maxCoeff(),
+                kFrameDifference);
       const Vector3d w_before = jacobian(model_.frame(point).angular) * velocity_of(s);
-      EXPECT_LE(((w_after - w_before) / (2 * kStep) - bias).cwiseAbs().maxCoeff(), kDifference);
+      EXPECT_LE(((w_after - w_before) / (2 * kStep) - bias).cwiseAbs().maxCoeff(),
+                kFrameDifference);
     }
   }
 }
@@ -108,7 +110,7 @@ TEST_F(FramesOfHume, TheMomentumsBiasIsTheDerivativeOfItsMatrix) {
     const Vector3d before = jacobian(model_.angular_momentum()) * velocity_of(s);
     model_.update(s);
     const Vector3d bias = vector(model_.angular_momentum().bias);
-    EXPECT_LE(((after - before) / (2 * kStep) - bias).cwiseAbs().maxCoeff(), kDifference);
+    EXPECT_LE(((after - before) / (2 * kStep) - bias).cwiseAbs().maxCoeff(), kFrameDifference);
   }
 }
 

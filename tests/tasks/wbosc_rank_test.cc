@@ -16,7 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kBar = 1e-9;  // of the largest acceleration or torque
+constexpr double kRankBar = 1e-9;  // of the largest acceleration or torque
 
 // A point fixed to a link, from what the model gives of others on the same link.
 model::Kinematics3 between(const model::Kinematics3& a, const model::Kinematics3& b, double share) {
@@ -105,7 +105,7 @@ class WboscRank : public testing::Test {
       const auto rows = static_cast<int>(level.J.rows());
       const VectorXd real = level.J * qdd + level.J_bias;
       EXPECT_LE((real - achieved().segment(row, rows)).cwiseAbs().maxCoeff(),
-                kBar * std::max(1.0, qdd.cwiseAbs().maxCoeff()));
+                kRankBar * std::max(1.0, qdd.cwiseAbs().maxCoeff()));
       row += rows;
     }
   }
@@ -129,7 +129,7 @@ TEST_F(WboscRank, TwentyMarkersInOneLevelGiveTheLeastSquaresAcceleration) {
     EXPECT_TRUE(solver_.solution().finite);
     const NaiveProblem p = dense();
     const VectorXd expected = naive_wbosc(p).tau;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kBar * expected.cwiseAbs().maxCoeff());
+    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kRankBar * expected.cwiseAbs().maxCoeff());
     // Least squares: no torque can reduce the residual further.
     const VectorXd zero = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, VectorXd::Zero(6)).qdd;
     for (int j = 0; j < 6; ++j) {
@@ -137,7 +137,7 @@ TEST_F(WboscRank, TwentyMarkersInOneLevelGiveTheLeastSquaresAcceleration) {
       const VectorXd change =
           p.levels[0].J * (dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, unit).qdd - zero);
       EXPECT_NEAR(change.dot(achieved() - commanded()), 0.0,
-                  kBar * change.norm() * commanded().norm());
+                  kRankBar * change.norm() * commanded().norm());
     }
     expect_truthful();
   }
@@ -170,7 +170,7 @@ TEST_F(WboscRank, ALevelInTheSpanOfAHigherOneGetsNoRankAndAddsNoTorque) {
     EXPECT_EQ(solver_.solution().level_rank[0], 6);
     EXPECT_EQ(solver_.solution().level_rank[1], 0);
     EXPECT_EQ(solver_.solution().level_rank[2], 0);
-    EXPECT_LE((tau() - before).cwiseAbs().maxCoeff(), kBar * before.cwiseAbs().maxCoeff());
+    EXPECT_LE((tau() - before).cwiseAbs().maxCoeff(), kRankBar * before.cwiseAbs().maxCoeff());
   }
 }
 
@@ -185,7 +185,7 @@ TEST_F(WboscRank, ATaskThatRepeatsPartOfAHigherOneGetsTheRest) {
   builder_->end_level();
   solver_.solve();
   EXPECT_EQ(solver_.solution().level_rank[1], 1);
-  EXPECT_NEAR(achieved()(0), 1.0, kBar);
+  EXPECT_NEAR(achieved()(0), 1.0, kRankBar);
   expect_truthful();
 }
 
@@ -215,7 +215,7 @@ TEST_F(WboscRank, FourContactPointsOnOneLinkHoldItLikeAPlate) {
     EXPECT_EQ(solver_.solution().actuation_rank, 6);
     EXPECT_EQ(solver_.solution().level_rank[0], 6);
     expect_truthful();
-    EXPECT_LE((achieved() - commanded()).cwiseAbs().maxCoeff(), kBar * 10.0);
+    EXPECT_LE((achieved() - commanded()).cwiseAbs().maxCoeff(), kRankBar * 10.0);
     // Of all ground forces that give this motion, the predicted one is the smallest.
     const NaiveProblem p = dense();
     const DenseMotion truth = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau());
@@ -251,7 +251,7 @@ TEST_F(WboscRank, RedundantContactsOnAMovingLinkAreHeldAsNearlyAsPossible) {
     builder_->end_level();
     solver_.solve();
     const VectorXd expected = naive_wbosc(dense()).tau;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kBar * expected.cwiseAbs().maxCoeff());
+    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kRankBar * expected.cwiseAbs().maxCoeff());
   }
 }
 
@@ -267,7 +267,7 @@ TEST_F(WboscRank, ThreeContactsOnThreeLinksAreSolvedLikeTwo) {
     EXPECT_EQ(solver_.solution().contact_rank, 9);
     EXPECT_EQ(solver_.solution().actuation_rank, 3);
     const VectorXd expected = naive_wbosc(dense()).tau;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kBar * expected.cwiseAbs().maxCoeff());
+    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kRankBar * expected.cwiseAbs().maxCoeff());
     expect_truthful();
   }
 }
@@ -280,7 +280,7 @@ TEST_F(WboscRank, InTheAirTheJointsStillObey) {
     solver_.solve();
     EXPECT_EQ(solver_.solution().contact_rank, 0);
     EXPECT_EQ(solver_.solution().actuation_rank, 6);
-    EXPECT_LE((achieved() - commanded()).cwiseAbs().maxCoeff(), kBar * 10.0);
+    EXPECT_LE((achieved() - commanded()).cwiseAbs().maxCoeff(), kRankBar * 10.0);
     expect_truthful();
   }
 }

@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 // Condition of A and of the constrained system is up to 1e5 here: 1e-16 x 1e5 leaves 1e-11; the
 // bar of the project is 1e-9 of the largest acceleration.
-constexpr double kBar = 1e-9;
+constexpr double kAlgebraBar = 1e-9;
 constexpr int kStates = 100;
 
 VectorXd vector_of(const std::vector<double>& v, int rows) {
@@ -76,8 +76,8 @@ TEST_F(WboscOnHume, WhatIsCommandedIsWhatTheEquationsOfMotionGive) {
     const double scale = std::max(truth.qdd.cwiseAbs().maxCoeff(), 1.0);
     const VectorXd real = task_acceleration(truth.qdd);
     const int rows = dual ? 4 : 6;  // the first level
-    EXPECT_LE((real - commanded()).head(rows).cwiseAbs().maxCoeff(), kBar * scale);
-    EXPECT_LE((real - achieved()).cwiseAbs().maxCoeff(), kBar * scale);
+    EXPECT_LE((real - commanded()).head(rows).cwiseAbs().maxCoeff(), kAlgebraBar * scale);
+    EXPECT_LE((real - achieved()).cwiseAbs().maxCoeff(), kAlgebraBar * scale);
     EXPECT_EQ(solver_.solution().level_rank[0], rows);
   }
 }
@@ -88,7 +88,7 @@ TEST_F(WboscOnHume, PredictedContactForcesAreThoseOfTheEquationsOfMotion) {
     solver_.solve();
     const DenseMotion truth = motion(tau());
     const VectorXd f = vector_of(solver_.solution().f, static_cast<int>(truth.f.size()));
-    EXPECT_LE((f - truth.f).cwiseAbs().maxCoeff(), kBar * truth.f.cwiseAbs().maxCoeff());
+    EXPECT_LE((f - truth.f).cwiseAbs().maxCoeff(), kAlgebraBar * truth.f.cwiseAbs().maxCoeff());
   }
 }
 
@@ -97,7 +97,8 @@ TEST_F(WboscOnHume, TorquesAreThoseOfAppendixA) {
     next(i % 2 == 0, 50.0);
     solver_.solve();
     const NaiveSolution naive = naive_wbosc(dense_problem(model_, solver_.problem()));
-    EXPECT_LE((tau() - naive.tau).cwiseAbs().maxCoeff(), kBar * naive.tau.cwiseAbs().maxCoeff());
+    EXPECT_LE((tau() - naive.tau).cwiseAbs().maxCoeff(),
+              kAlgebraBar * naive.tau.cwiseAbs().maxCoeff());
   }
 }
 
@@ -119,7 +120,7 @@ TEST_F(WboscOnHume, ContactsDoNotAccelerateWhateverTheTorque) {
     solver_.solve();
     const DenseMotion truth = motion(tau());
     EXPECT_LE((p.Js * truth.qdd + p.Js_bias).cwiseAbs().maxCoeff(),
-              kBar * truth.qdd.cwiseAbs().maxCoeff());
+              kAlgebraBar * truth.qdd.cwiseAbs().maxCoeff());
   }
 }
 
@@ -134,7 +135,7 @@ TEST_F(WboscOnHume, InternalForcesDoNotMoveTheRobot) {
     const DenseMotion with = motion(tau());
     EXPECT_GT((tau() - before).cwiseAbs().maxCoeff(), 1.0);
     EXPECT_LE((with.qdd - without.qdd).cwiseAbs().maxCoeff(),
-              kBar * without.qdd.cwiseAbs().maxCoeff());
+              kAlgebraBar * without.qdd.cwiseAbs().maxCoeff());
   }
 }
 
@@ -148,7 +149,8 @@ TEST_F(WboscOnHume, LowerPrioritiesChangeNothingAbove) {
     solver_.solve();
     const DenseMotion after = motion(tau());
     const double scale = after.qdd.cwiseAbs().maxCoeff();
-    EXPECT_LE((task_acceleration(after.qdd).head(4) - task).cwiseAbs().maxCoeff(), kBar * scale);
+    EXPECT_LE((task_acceleration(after.qdd).head(4) - task).cwiseAbs().maxCoeff(),
+              kAlgebraBar * scale);
     EXPECT_GT((after.qdd - before.qdd).cwiseAbs().maxCoeff(), 1.0);
   }
 }
@@ -162,7 +164,8 @@ TEST_F(WboscOnHume, EffectiveInertiaIsTheInverseOfTheTasksMobility) {
     solver_.effective_inertia(0, rows, lambda.data());
     const NaiveProblem p = dense_problem(model_, solver_.problem());
     const Eigen::MatrixXd expected = naive_effective_inertia(p, p.levels[0].J);
-    EXPECT_LE((lambda - expected).cwiseAbs().maxCoeff(), kBar * expected.cwiseAbs().maxCoeff());
+    EXPECT_LE((lambda - expected).cwiseAbs().maxCoeff(),
+              kAlgebraBar * expected.cwiseAbs().maxCoeff());
   }
 }
 
@@ -172,7 +175,8 @@ TEST_F(WboscOnHume, AKnownExternalForceIsTakenIntoAccount) {
   solver_.solve();
   const DenseMotion truth = motion(tau());
   const double scale = truth.qdd.cwiseAbs().maxCoeff();
-  EXPECT_LE((task_acceleration(truth.qdd) - commanded()).cwiseAbs().maxCoeff(), kBar * scale);
+  EXPECT_LE((task_acceleration(truth.qdd) - commanded()).cwiseAbs().maxCoeff(),
+            kAlgebraBar * scale);
 }
 
 TEST_F(WboscOnHume, ATorqueLimitClampsAndTheAchievedAccelerationSaysSo) {
@@ -187,7 +191,7 @@ TEST_F(WboscOnHume, ATorqueLimitClampsAndTheAchievedAccelerationSaysSo) {
   EXPECT_LE(tau().cwiseAbs().maxCoeff(), 2.0);
   const DenseMotion truth = motion(tau());
   const double scale = truth.qdd.cwiseAbs().maxCoeff();
-  EXPECT_LE((achieved() - task_acceleration(truth.qdd)).cwiseAbs().maxCoeff(), kBar * scale);
+  EXPECT_LE((achieved() - task_acceleration(truth.qdd)).cwiseAbs().maxCoeff(), kAlgebraBar * scale);
   EXPECT_GT((achieved() - commanded()).cwiseAbs().maxCoeff(), 0.1);
 }
 
