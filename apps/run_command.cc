@@ -11,10 +11,10 @@
 #include <fstream>
 #include <iostream>
 
-#include "apps/allocations.h"
 #include "apps/commands.h"
 #include "apps/report_command.h"
 #include "apps/run_options.h"
+#include "core/allocation_count.h"
 #include "engine/log_writer.h"
 #include "hal/stub_backend.h"
 #include "lab/run.h"
@@ -140,9 +140,9 @@ lab::RunSpec make_spec(const RunOptions& options) {
   spec.realtime = options.realtime;
   spec.log_every = options.log_all ? 1 : options.log_every;
   spec.stop = &g_stop;
-  if (allocations_are_counted()) {
-    spec.arm_allocations = arm_allocations;
-    spec.allocations = allocations;
+  if (core::allocations_are_counted()) {
+    spec.arm_allocations = core::arm_allocation_count;
+    spec.allocations = core::allocation_count;
   }
   if (isatty(STDERR_FILENO) && !options.quiet) {
     spec.status = [](const lab::RunStatus& s) {

@@ -6,6 +6,7 @@
 
 #include "behaviors/diagram.h"
 #include "behaviors/diagram_text.h"
+#include "core/escape.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -19,29 +20,6 @@ constexpr const char* kHead =
         fontsize=11, fontcolor="#1f2933", margin="0.1,0.06", penwidth=1, height=0.3]
   edge [fontname="Helvetica", fontsize=9, fontcolor="#374151", color="#52606d", arrowsize=0.65]
 )";
-
-std::string escape_html(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 std::string escape_quoted(std::string_view text) {
   std::string out;
@@ -58,13 +36,13 @@ std::string label_html(const DiagramState& state, const std::string& title) {
   const std::vector<std::string> lines = details_of(state, kDetailWidth);
   const bool open = !state.children.empty();  // a cluster's label begins at its left border
   out += fmt::format(R"(<TR><TD ALIGN="{}"><B>{}</B></TD></TR>)", open ? "LEFT" : "CENTER",
-                     escape_html(title));
+                     core::escape_html(title));
   for (const std::string& line : lines) {
     const bool indented = line.starts_with("  ");
-    out +=
-        fmt::format(R"(<TR><TD ALIGN="LEFT"><FONT POINT-SIZE="9" COLOR="{}">{}{}</FONT></TD></TR>)",
-                    line.starts_with("safe:") ? "#a63232" : "#5f6b7a",
-                    indented ? "&#160;&#160;" : "", escape_html(indented ? line.substr(2) : line));
+    out += fmt::format(
+        R"(<TR><TD ALIGN="LEFT"><FONT POINT-SIZE="9" COLOR="{}">{}{}</FONT></TD></TR>)",
+        line.starts_with("safe:") ? "#a63232" : "#5f6b7a", indented ? "&#160;&#160;" : "",
+        core::escape_html(indented ? line.substr(2) : line));
   }
   return out + "</TABLE>>";
 }
@@ -169,7 +147,7 @@ class DotWriter {
           "{}s{} [shape=circle, style=filled, margin=\"0.01\", height=0.3, "
           "label=<<B>{}</B><BR/><FONT "
           "POINT-SIZE=\"8\">{}</FONT>>]\n",
-          indent, s, mark, escape_html(info.name));
+          indent, s, mark, core::escape_html(info.name));
       for (const int target : info.initial) {
         out_ +=
             fmt::format("{}s{} -> {} [style=dashed{}]\n", indent, s, head(target), at_head(target));

@@ -5,7 +5,7 @@ install(TARGETS ${libraries} EXPORT footfallTargets ARCHIVE DESTINATION ${CMAKE_
 install(TARGETS footfall RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 foreach(folder core hal model tasks behaviors engine sim lab)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/footfall
-    FILES_MATCHING PATTERN "*.h" PATTERN "library" EXCLUDE PATTERN "scaffolds" EXCLUDE PATTERN "worlds" EXCLUDE PATTERN "web" EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN "allocation_count.h" EXCLUDE PATTERN "library" EXCLUDE PATTERN "scaffolds" EXCLUDE PATTERN "worlds" EXCLUDE PATTERN "web" EXCLUDE)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/behaviors/library ${PROJECT_SOURCE_DIR}/behaviors/scaffolds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/behaviors)

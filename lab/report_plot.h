@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/escape.h"
 #include "lab/report_data.h"
 
 namespace footfall::lab {
@@ -74,7 +75,7 @@ double greatest(const TimePlot& plot);
 // Places for about `count` ticks: multiples of 1, 2 or 5 times a power of ten in [low, high].
 std::vector<double> ticks(double low, double high, int count);
 
-std::string escape_html(const std::string& text);
+using core::escape_html;
 std::string base64(const void* data, std::size_t size);
 // Number of the band colour of a state's name.
 int band_colour(const std::string& name, int index);

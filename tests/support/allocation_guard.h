@@ -1,19 +1,26 @@
-// Counts heap calls of the calling thread while a guard lives. The interposed functions must be in
-// the test's own executable (allocation_guard.cc among its sources). Under a sanitizer nothing is
-// counted: `counts()` says so.
+// Counts heap calls of the calling thread while a guard lives. The test links
+// footfall::allocation_count. Under a sanitizer nothing is counted: `counts()` says so.
 #pragma once
+
+#include "core/allocation_count.h"
 
 namespace footfall::tests {
 
 class AllocationGuard {
  public:
-  AllocationGuard() noexcept;
-  ~AllocationGuard();
+  AllocationGuard() noexcept : before_(core::allocation_count()) {
+    core::arm_allocation_count(true);
+  }
+  ~AllocationGuard() { core::arm_allocation_count(false); }
   AllocationGuard(const AllocationGuard&) = delete;
   AllocationGuard& operator=(const AllocationGuard&) = delete;
 
-  static bool counts() noexcept;      // false under sanitizers
-  long allocations() const noexcept;  // since construction, frees included
+  static bool counts() noexcept { return core::allocations_are_counted(); }
+  // Since construction, frees included.
+  long allocations() const noexcept { return core::allocation_count() - before_; }
+
+ private:
+  std::int64_t before_;
 };
 
 }  // namespace footfall::tests
