@@ -10,6 +10,7 @@
 #include "behaviors/language.h"
 #include "core/explain.h"
 #include "core/yaml_write.h"
+#include "lab/scenario_keys.h"
 #include "model/robot_keys.h"
 #include "sim/world_keys.h"
 
@@ -34,7 +35,7 @@ struct Config {
 const core::KeyTable* table_of(const core::YamlNode& root) {
   const std::string kind = root.is_map() && !root.entries.empty() ? root.entries.front().key : "";
   for (const core::FileTable* file :
-       {&behaviors::kBehaviorFile, &model::kRobotFile, &sim::kWorldFile}) {
+       {&behaviors::kBehaviorFile, &model::kRobotFile, &sim::kWorldFile, &lab::kScenarioFile}) {
     if (kind == file->kind) return file->root;
   }
   return nullptr;
@@ -164,7 +165,7 @@ void add_config_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ConfigOptions>();
   CLI::App* command = app.add_subcommand(
       "config", "Prints a file with its bases and --set applied, or where a value comes from");
-  command->add_option("FILE", options->file, "Behavior file or name, robot file, world file")
+  command->add_option("FILE", options->file, "Behavior file or name; robot, world or scenario file")
       ->required();
   auto* explained = command->add_option(
       "--explain", options->key, "A key, with dots: gains.single.swing.kp, machine.states.step");

@@ -24,4 +24,15 @@ int Behavior::find_parameter(std::string_view parameter) const {
   return -1;
 }
 
+ParameterPart Behavior::find_parameter_part(std::string_view text) const {
+  const int whole = find_parameter(text);
+  const std::size_t dot = text.rfind('.');
+  if (whole >= 0 || dot == std::string_view::npos) return {whole, -1};
+  const int parameter = find_parameter(text.substr(0, dot));
+  if (parameter < 0) return {};
+  const int size = parameters[static_cast<std::size_t>(parameter)].size;
+  const int component = component_of(text.substr(dot + 1), size);
+  return component < 0 ? ParameterPart{} : ParameterPart{parameter, component};
+}
+
 }  // namespace footfall::behaviors

@@ -90,6 +90,8 @@ struct Behavior : Chart {
   int find_event(std::string_view event) const;
   int find_state(std::string_view path) const;  // by full dotted path
   int find_parameter(std::string_view parameter) const;
+  // `goal`, or one of its values: `goal.y`.
+  ParameterPart find_parameter_part(std::string_view name) const;
 };
 
 }  // namespace footfall::behaviors

@@ -172,12 +172,6 @@ Operand ExpressionParser::parse_parameter(const Token& token) {
        fmt::format("unknown parameter '${}'{}", token.text, core::did_you_mean(token.text, names)));
 }
 
-int ExpressionParser::component_of(const std::string& name, int size) {
-  const std::size_t index = std::string_view("xyz").find(name);
-  if (name.size() != 1 || index == std::string_view::npos) return -1;
-  return static_cast<int>(index) < size ? static_cast<int>(index) : -1;
-}
-
 Operand ExpressionParser::parse_entry(const Token& token) {
   if (scope_.entry_axes == nullptr) {
     fail(token, "misplaced-name", "'entry' has a meaning only in a task's reference");

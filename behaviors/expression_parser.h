@@ -73,7 +73,6 @@ class ExpressionParser {
   Operand parse_function(const Token& name, const FunctionInfo& function);
   Operand result_of(const FunctionInfo& function, const Token& name, Operand argument);
   Operand parse_parameter(const Token& token);
-  static int component_of(const std::string& name, int size);
   Operand parse_entry(const Token& token);
   Operand parse_name(const Token& token);
   [[noreturn]] void unknown_name(const Token& token);

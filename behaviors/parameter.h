@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/units.h"
 
@@ -21,6 +22,18 @@ struct ParameterInfo {
   bool gain = false;      // an entry of a gain table
 
   bool has_range() const { return min < max; }
+};
+
+// Which of `size` values `x`, `y` or `z` is; -1: none of them.
+inline int component_of(std::string_view name, int size) {
+  const int index = name.size() == 1 ? name[0] - 'x' : -1;
+  return index >= 0 && index < size && index < 3 ? index : -1;
+}
+
+// A parameter, or one of its values.
+struct ParameterPart {
+  int parameter = -1;  // into Behavior::parameters
+  int component = -1;  // -1: all
 };
 
 }  // namespace footfall::behaviors

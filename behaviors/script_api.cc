@@ -174,24 +174,18 @@ int api_log(lua_State* lua, ScriptState& state, std::string& problem) {
 
 int find_parameter_slots(const Behavior& behavior, const std::string& name, int& size, double& min,
                          double& max, std::string& why) {
-  const std::size_t dot = name.rfind('.');
-  int component = -1;
-  int index = behavior.find_parameter(name);
-  if (index < 0 && dot != std::string::npos && name.size() == dot + 2) {
-    component = name[dot + 1] - 'x';
-    index = behavior.find_parameter(name.substr(0, dot));
-  }
-  const auto info = index < 0 ? nullptr : &behavior.parameters[static_cast<std::size_t>(index)];
-  if (info == nullptr || component >= info->size || component < -1) {
+  const auto [index, component] = behavior.find_parameter_part(name);
+  if (index < 0) {
     std::vector<std::string> names;
     for (const ParameterInfo& parameter : behavior.parameters) names.push_back(parameter.name);
     why = fmt::format("unknown parameter '{}'{}", name, core::did_you_mean(name, names));
     return -1;
   }
-  size = component < 0 ? info->size : 1;
-  min = info->min;
-  max = info->max;
-  return info->slot + std::max(component, 0);
+  const ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(index)];
+  size = component < 0 ? info.size : 1;
+  min = info.min;
+  max = info.max;
+  return info.slot + std::max(component, 0);
 }
 
 void open_footfall(lua_State* lua) {

@@ -34,10 +34,11 @@ struct ScriptedPush {
   double direction = 0.0;  // rad in the heading frame, 0 forward, pi/2 left
 };
 
-// New values of a parameter or gain, SI, one for each of its slots.
+// New values of a parameter or gain, SI: of all its slots, or of one (`goal.y`).
 struct NewValues {
   int parameter = 0;  // into Behavior::parameters
   std::vector<double> values;
+  int first = 0;  // which of the parameter's slots the first value is for
 };
 
 enum class InjectedFault : std::uint8_t {

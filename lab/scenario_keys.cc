@@ -38,7 +38,8 @@ constexpr KeySpec kScriptRows[] = {
     key("on", name_of("an event or prefix"), "when: each time that this event is raised"),
     key("push", map_of(kPushKeys), "a horizontal force on a body"),
     key("edit", by_name(one_or_list(any_quantity())),
-        "a live edit: parameters and gains by name, applied whole or not at all"),
+        "a live edit: parameters and gains by name (`goal.x` for one value), applied whole or not "
+        "at all"),
     key("over", quantity(kTime), "time in which the edit ramps").otherwise("0 s"),
     key("set", by_name(one_or_list(any_quantity())), "parameters by name, at once"),
     key("raise", name_of("an event"), "an event from outside, with the edit if there is one"),

@@ -199,7 +199,7 @@ std::vector<NewValues> read_changes(ScenarioContext& context, const YamlNode& no
   if (context.names == nullptr) return {};
   const Behavior& behavior = *context.scenario.behavior;
   for (const core::YamlEntry& entry : node.entries) {
-    const int parameter = behavior.find_parameter(entry.key);
+    const auto [parameter, component] = behavior.find_parameter_part(entry.key);
     if (parameter < 0) {
       std::vector<std::string> names;
       for (const ParameterInfo& info : behavior.parameters) names.push_back(info.name);
@@ -208,15 +208,19 @@ std::vector<NewValues> read_changes(ScenarioContext& context, const YamlNode& no
           fmt::format("unknown parameter '{}'{}", entry.key, core::did_you_mean(entry.key, names)));
       continue;
     }
-    const ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(parameter)];
+    ParameterInfo info = behavior.parameters[static_cast<std::size_t>(parameter)];
     if (edit && !info.live) {
       context.error(entry.key_mark, "misplaced-name",
                     fmt::format("parameter '{}' is not live: write it under 'set', or give it a "
                                 "range and 'live: true'",
-                                entry.key));
+                                info.name));
       continue;
     }
-    changes.push_back({parameter, read_values(context, entry.value, info)});
+    if (component >= 0) {  // `goal.y` is read as a parameter of one value
+      info.name = entry.key;
+      info.size = 1;
+    }
+    changes.push_back({parameter, read_values(context, entry.value, info), std::max(component, 0)});
   }
   return changes;
 }

@@ -402,6 +402,19 @@ class Config(Case):
         self.assertIn("b.yaml:3:14", text)
         self.assertIn("a.yaml:7:25", text)
 
+    def test_a_scenario_and_what_its_keys_mean(self):
+        self.write("a.yaml", CHART)
+        self.write("s.yaml", "scenario: 1\nbehavior: a.yaml\nfor: 5 s\nscript: [{at: 1 s, raise: e}]\n")
+        path = self.write("t.yaml", "base: s.yaml\nfor: 7 s\n")
+        printed = self.footfall("config", path)
+        self.assertEqual(printed.returncode, 0, printed.stderr)
+        self.assertIn("for: 7 s", printed.stdout)
+        text = self.footfall("config", path, "--explain", "for").stdout
+        self.assertIn("t.yaml:2:6", text)
+        self.assertIn("s.yaml:3:6", text)
+        self.assertIn("how long a run lasts", text)
+        self.assertIn("the default is flat", self.footfall("config", path, "--explain", "world").stdout)
+
     def test_what_is_printed_is_the_behavior(self):
         for name in ("balance", "balance_paper"):
             whole = self.write(name + "_whole.yaml", self.footfall("config", name).stdout)

@@ -112,6 +112,19 @@ TEST_F(ScenarioLoader, TheScriptSaysWhenAndWhat) {
   EXPECT_EQ(script[4].duration, 2.0);
   EXPECT_EQ(script[5].moment.event, "contact.left_foot.touchdown");
 }
+TEST_F(ScenarioLoader, AnEditMayChangeOneValueOfAParameter) {
+  const ScenarioDescription scenario = load(
+      "scenario: 1\nbehavior: walk.yaml\nfor: 20 s\n"
+      "script: [{at: 1 s, edit: {goal.y: 30 cm, goal: [1 m, 2 m]}}]\n");
+  EXPECT_EQ(diagnostics_.to_string(), "");
+  const auto& edit = scenario.script.at(0).edit;
+  ASSERT_EQ(edit.size(), 2U);
+  EXPECT_EQ(edit[0].parameter, edit[1].parameter);
+  EXPECT_EQ(edit[0].first, 1);
+  EXPECT_EQ(edit[0].values, std::vector<double>{0.3});
+  EXPECT_EQ(edit[1].first, 0);
+  EXPECT_EQ(edit[1].values, (std::vector<double>{1.0, 2.0}));
+}
 TEST_F(ScenarioLoader, ExpectationsAreCompiledAgainstTheSignalsOfTheRun) {
   ScenarioDescription scenario = load(kScenario);
   const auto& expectations = scenario.expectations;
@@ -175,6 +188,12 @@ TEST_F(ScenarioLoader, AValueOfTheWrongKindSizeOrRangeIsRefused) {
             "4:38: error: expected 'lift_time' from 0.08 to 0.4 s, got '1 s'\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal: [1 m]}}]"),
             "4:33: error: expected 2 values for 'goal', got 1\n");
+  EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.x: 11 m}}]"),
+            "4:35: error: expected 'goal.x' from -10 to 10 m, got '11 m'\n");
+  EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.x: [1 m, 2 m]}}]"),
+            "4:35: error: expected 1 value for 'goal.x', got 2\n");
+  EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.z: 1 m}}]"),
+            "4:27: error: unknown parameter 'goal.z' (did you mean 'goal'?)\n");
   EXPECT_EQ(problems_of("script: [{at: 21 s, raise: tapped}]"),
             "4:15: error: '21 s' is behind the end of the run, which lasts 20 s\n");
   EXPECT_EQ(problems_of("expect: [{that: steps > 1, in: 120 % of seeds}]"),
