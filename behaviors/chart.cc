@@ -1,7 +1,9 @@
 // Questions about a chart's structure; see chart.h.
 #include "behaviors/chart.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace footfall::behaviors {
 
@@ -29,16 +31,49 @@ bool Chart::event_matches(std::string_view pattern, std::string_view event) {
          (event.size() == pattern.size() || event[pattern.size()] == '.');
 }
 
+namespace {
+
+// By letters, the dot before all others: an event, all below it, then the rest.
+bool goes_before(std::string_view a, std::string_view b) {
+  const auto weight = [](char c) { return c == '.' ? 0 : 1 + static_cast<unsigned char>(c); };
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                      [&weight](char x, char y) { return weight(x) < weight(y); });
+}
+
+// The stretch of sorted events that a pattern names.
+Range stretch_of(std::string_view pattern, const std::vector<std::string_view>& sorted) {
+  if (pattern == "*") return {0, static_cast<int>(sorted.size())};
+  const std::string_view stem =
+      pattern.ends_with(".*") ? pattern.substr(0, pattern.size() - 2) : pattern;
+  const auto first = std::lower_bound(sorted.begin(), sorted.end(), stem, goes_before);
+  const auto end = std::partition_point(first, sorted.end(), [&](std::string_view event) {
+    return Chart::event_matches(pattern, event);
+  });
+  return {static_cast<int>(first - sorted.begin()), static_cast<int>(end - first)};
+}
+
+}  // namespace
+
 void Chart::match_events() {
-  const auto words = (events.size() + 63) / 64;
-  event_words = static_cast<int>(words);
-  event_match.assign(transitions.size() * words, 0);
-  for (const EventPattern& pattern : patterns) {
-    const std::size_t row = static_cast<std::size_t>(pattern.transition) * words;
-    for (std::size_t e = 0; e < events.size(); ++e) {
-      if (!event_matches(pattern.text, events[e])) continue;
-      event_match[row + e / 64] |= std::uint64_t{1} << (e % 64);
-    }
+  std::vector<int> order(events.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto name = [this](int e) -> std::string_view {
+    return events[static_cast<std::size_t>(e)];
+  };
+  std::sort(order.begin(), order.end(),
+            [&name](int a, int b) { return goes_before(name(a), name(b)); });
+  std::vector<std::string_view> sorted;
+  event_ranks.resize(events.size());
+  for (const int e : order) {
+    event_ranks[static_cast<std::size_t>(e)] = static_cast<int>(sorted.size());
+    sorted.push_back(name(e));
+  }
+  heard_events.assign(transitions.size(), {});
+  heard_ranks.clear();
+  for (const EventPattern& pattern : patterns) {  // those of a transition follow each other
+    Range& own = heard_events[static_cast<std::size_t>(pattern.transition)];
+    if (own.count++ == 0) own.first = static_cast<int>(heard_ranks.size());
+    heard_ranks.push_back(stretch_of(pattern.text, sorted));
   }
 }
 

@@ -128,9 +128,11 @@ struct Chart {
   std::vector<CallInfo> calls;
   std::vector<std::string> events;
   std::vector<EventPattern> patterns;
-  // Which events enable which transition: bit e of row t; event_words 64-bit words a row.
-  std::vector<std::uint64_t> event_match;
-  int event_words = 0;
+  // Which events enable which transition. In the order of event_ranks, what a pattern names lies
+  // together: a stretch of ranks for each pattern, and for each transition its stretches.
+  std::vector<int> event_ranks;             // by event
+  std::vector<Range> heard_ranks;           // of ranks, transition by transition
+  std::vector<Range> heard_events;          // by transition: into heard_ranks
   std::vector<std::uint8_t> script_events;  // by event: a script handles it; empty: none
   int safe_transition = -1;                 // to the root's `safe` state, -1: none
   int history_count = 0;
@@ -142,10 +144,15 @@ struct Chart {
     return state > ancestor && state < states[static_cast<std::size_t>(ancestor)].end;
   }
   bool matches(int transition, int event) const {
-    const auto word = static_cast<std::size_t>(transition * event_words + event / 64);
-    return (event_match[word] >> (static_cast<unsigned>(event) % 64U) & 1U) != 0;
+    const int rank = event_ranks[static_cast<std::size_t>(event)];
+    const Range own = heard_events[static_cast<std::size_t>(transition)];
+    for (int k = own.first; k < own.end(); ++k) {
+      const Range heard = heard_ranks[static_cast<std::size_t>(k)];
+      if (rank >= heard.first && rank < heard.end()) return true;
+    }
+    return false;
   }
-  // Fills event_match from the patterns, for all events there are.
+  // Fills event_ranks and what is heard from the patterns, for all events there are.
   void match_events();
   // The innermost compound state, or the root, that properly contains `source` and all targets.
   // Source: W3C SCXML 1.0, Appendix D, getTransitionDomain and findLCCA.

@@ -29,9 +29,7 @@ void load_raise(LoadContext& context, const core::YamlNode& node) {
     return;
   }
   const int event = context.add_event(*name);
-  if (event < context.built_in_events &&
-      std::find(context.declared_events.begin(), context.declared_events.end(), *name) ==
-          context.declared_events.end()) {
+  if (event < context.built_in_events && !context.declared_events.contains(*name)) {
     context.error(node.mark, "built-in-event",
                   fmt::format("'{}' is raised by the engine only", *name));
   }

@@ -186,10 +186,10 @@ int LoadContext::require_target(int from, const core::YamlNode& node) {
 }
 
 int LoadContext::add_event(std::string_view name) {
-  const int found = behavior.find_event(name);
-  if (found >= 0) return found;
-  behavior.events.emplace_back(name);
-  return static_cast<int>(behavior.events.size()) - 1;
+  const auto [found, fresh] =
+      event_ids.try_emplace(std::string(name), static_cast<int>(behavior.events.size()));
+  if (fresh) behavior.events.emplace_back(name);
+  return found->second;
 }
 
 std::vector<std::string> LoadContext::parameter_names() const {

@@ -9,8 +9,10 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -79,12 +81,13 @@ struct LoadContext {
   std::vector<std::string> used_templates, used_stacks, used_torque_loops;
   std::vector<std::pair<std::string, Arguments>> mirrored;  // templates, as written
   std::vector<RaisedEvent> raised_events;
-  std::vector<std::string> declared_events;
+  std::set<std::string> declared_events;
   std::vector<const core::YamlNode*> transition_nodes;  // by transition, nullptr: a state's own
   std::vector<std::vector<int>> control_states;  // by control, the states that it was merged from
   std::vector<std::string> script_functions;     // that `call:` may name
   std::vector<std::string> script_patterns;      // of footfall.on
   std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
+  std::unordered_map<std::string, int> event_ids;         // as Behavior::events
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and what to say of them
   std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source

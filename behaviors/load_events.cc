@@ -51,7 +51,19 @@ void check_event_name(LoadContext& context, const std::string& name, core::Mark 
 }
 
 constexpr std::string_view kDone = "done.state.";
-constexpr std::string_view kChanged = "parameter.changed.";
+
+// A prefix is whole words: `fault.*`, not `fault*`.
+bool check_prefix(LoadContext& context, const core::YamlNode& node) {
+  std::string stem = node.scalar.substr(0, node.scalar.find('*'));
+  if (stem.ends_with('.')) stem.pop_back();
+  if (core::is_dotted_name(stem) && node.scalar == stem + ".*") return true;
+  const std::string hint = core::is_dotted_name(stem)
+                               ? fmt::format(" (did you mean '{}.*'?)", stem)
+                               : std::string(": `fault.*` means `fault` and all below it");
+  context.error(node.mark, "event-name",
+                fmt::format("'{}' is no prefix of events{}", node.scalar, hint));
+  return false;
+}
 
 // One event name or pattern of a transition's `on`; done.state.NAME is resolved like a target.
 std::string resolve_pattern(LoadContext& context, int state, const core::YamlNode& node) {
@@ -60,6 +72,7 @@ std::string resolve_pattern(LoadContext& context, int state, const core::YamlNod
     return {};
   }
   const std::string& text = node.scalar;
+  if (text != "*" && text.find('*') != std::string::npos && !check_prefix(context, node)) return {};
   if (!text.starts_with(kDone) || text.ends_with("*")) {
     if (!text.ends_with("*")) context.add_event(text);
     return text;
@@ -89,7 +102,7 @@ void load_events(LoadContext& context) {
       for (const core::YamlEntry& entry : events->entries) {
         core::check_doc(entry.value, context.diagnostics);
         check_event_name(context, entry.key, entry.key_mark);
-        context.declared_events.push_back(entry.key);
+        context.declared_events.insert(entry.key);
         context.add_event(entry.key);
       }
     }
@@ -126,13 +139,14 @@ void finish_events(LoadContext& context) {
       }
     }
   }
-  for (const EventPattern& pattern : behavior.patterns) {
-    for (const std::string& event : behavior.events) {
-      if (!event.starts_with(kChanged) || !Chart::event_matches(pattern.text, event)) continue;
-      behavior.watches_parameters = true;
-    }
-  }
   behavior.match_events();
+  for (const int event : behavior.changed_events) {
+    const int rank = behavior.event_ranks[static_cast<std::size_t>(event)];
+    behavior.watches_parameters =
+        behavior.watches_parameters ||
+        std::any_of(behavior.heard_ranks.begin(), behavior.heard_ranks.end(),
+                    [rank](Range heard) { return rank >= heard.first && rank < heard.end(); });
+  }
 }
 
 }  // namespace footfall::behaviors

@@ -15,8 +15,7 @@ TEST(CheckEvents, APrefixThatMatchesNothingIsSaid) {
       "mean 'fault.*'?)\n");
   EXPECT_EQ(
       problems(chart("  states: {a: {transitions: [{on: fault*, to: b}]}, b: {type: final}}")),
-      "b.yaml:3:35: warning: nothing raises 'fault*', and `events` does not list it (did you "
-      "mean 'fault.*'?)\n");
+      "b.yaml:3:35: error: 'fault*' is no prefix of events (did you mean 'fault.*'?)\n");
   EXPECT_EQ(problems(chart("  states: {a: {transitions: [{on: [fault.*, error.*, done.*, '*'], to: "
                            "b}]}, b: {type: final}}")),
             "");

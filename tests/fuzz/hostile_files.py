@@ -97,6 +97,7 @@ def files():
     yield "template bomb", lambda: template_bomb()
     yield "a template in itself", lambda: HEAD + b"templates: {t: {states: {a: {use: t}}}}\nmachine: {use: t}\n"
     yield "10^4 states nobody finds", lambda: machine(b"  states:\n" + many(10_000, lambda i: b"    s%d: {on_exit: [], transitions: [{on: e, to: z%d}]}\n" % (i, i)))
+    yield "2 10^4 events of one state", lambda: machine(b"  states:\n    a:\n      transitions:\n" + many(20_000, lambda i: b"        - {on: e%d, to: b}\n" % i) + b"    b: {after: 1 s, to: nowhere}\n")
     yield "its own base", lambda: b"base: file.yaml\nbehavior: 1\n"
     yield "a base that never ends", lambda: b"base: /dev/zero\nbehavior: 1\n"
     yield "a robot that never ends", lambda: HEAD + b"robot: /dev/zero\nmachine: {}\n"
