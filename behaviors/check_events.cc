@@ -12,30 +12,51 @@ namespace {
 
 constexpr std::string_view kChanged = "parameter.changed.";
 
-// Whether `done.state.` of a state can come: some way into a final child, by the parallel's rule.
+bool has_final_child(const Chart& chart, int s) {
+  const int end = chart.states[at(s)].end;
+  for (int c = s + 1; c < end; c = chart.states[at(c)].end) {
+    if (chart.states[at(c)].kind == StateKind::final) return true;
+  }
+  return false;
+}
+
+// Whether all of it can be in final states at once.
+bool can_be_final(const Chart& chart, int s) {
+  const StateInfo& info = chart.states[at(s)];
+  if (info.kind != StateKind::parallel) return has_final_child(chart, s);
+  for (int c = s + 1; c < info.end; c = chart.states[at(c)].end) {
+    if (chart.states[at(c)].history < 0 && !can_be_final(chart, c)) return false;
+  }
+  return true;
+}
+
+// Whether `done.state.` of a state can come. For a parallel one it is raised when a region of its
+// own enters a final child, by its rule; what ends inside a region that is parallel itself does not
+// reach it.
 bool can_be_done(const Chart& chart, int s) {
   const StateInfo& info = chart.states[at(s)];
-  bool any = false, all = true;
+  if (info.kind != StateKind::parallel) return has_final_child(chart, s);
+  if (info.done == DoneRule::region) return has_final_child(chart, info.done_region);
+  bool ends = false;
   for (int c = s + 1; c < info.end; c = chart.states[at(c)].end) {
-    if (chart.states[at(c)].history >= 0) continue;
-    if (info.kind == StateKind::parallel && info.done == DoneRule::region) {
-      if (c == info.done_region) return can_be_done(chart, c);
-      continue;
-    }
-    const bool done = info.kind == StateKind::parallel
-                          ? can_be_done(chart, c)
-                          : chart.states[at(c)].kind == StateKind::final;
-    any = any || done;
-    all = all && done;
+    ends = ends || (chart.states[at(c)].history < 0 && has_final_child(chart, c));
   }
-  return info.kind == StateKind::parallel && info.done == DoneRule::all ? all : any;
+  return ends && (info.done == DoneRule::any || can_be_final(chart, s));
+}
+
+// Said at its `done`.
+bool names_parallel_region(const Chart& chart, int s) {
+  const StateInfo& info = chart.states[at(s)];
+  return info.done == DoneRule::region &&
+         chart.states[at(info.done_region)].kind == StateKind::parallel;
 }
 
 class EventCheck {
  public:
   explicit EventCheck(LoadContext& context) : context_(context), behavior_(context.behavior) {
     for (const std::string& event : context.declared_events) raised_.insert(event);
-    for (const RaisedEvent& event : context.raised_events) raised_.insert(event.name);
+    for (const RaisedEvent& event : context.raised_events) by_actions_.insert(event.name);
+    raised_.insert(by_actions_.begin(), by_actions_.end());
     raised_.insert(behavior_.events.begin(), behavior_.events.begin() + context.built_in_events);
     for (const ParameterInfo& parameter : behavior_.parameters) {
       raised_.insert(std::string(kChanged) + parameter.name);
@@ -57,9 +78,7 @@ class EventCheck {
     const core::YamlNode* declared = context_.section("events");
     if (declared == nullptr) return;
     for (const core::YamlEntry& entry : declared->entries) {
-      const auto same = [&](const RaisedEvent& event) { return event.name == entry.key; };
-      const auto& raised = context_.raised_events;
-      if (std::any_of(raised.begin(), raised.end(), same)) continue;  // said there
+      if (by_actions_.contains(entry.key)) continue;  // said there
       check_heard(entry.key, entry.key_mark);
     }
   }
@@ -93,7 +112,7 @@ class EventCheck {
     if (is_raised(pattern.text)) {
       if (!pattern.text.starts_with(kDone) || pattern.text.ends_with("*")) return;
       const int s = behavior_.find_state(std::string_view(pattern.text).substr(kDone.size()));
-      if (s < 0 || can_be_done(behavior_, s)) return;
+      if (s < 0 || can_be_done(behavior_, s) || names_parallel_region(behavior_, s)) return;
       never_done_.look(pattern.mark, true,
                        fmt::format("'{}' is never done: it has no `type: final` state that would "
                                    "end it",
@@ -121,6 +140,7 @@ class EventCheck {
 
   LoadContext& context_;
   const Behavior& behavior_;
+  std::set<std::string> by_actions_;
   std::set<std::string> raised_;            // by actions, the engine or from outside
   std::set<std::string> exact_, prefixes_;  // that transitions and scripts listen to
   std::set<std::string> meant_;             // what a misspelt one meant: one mistake is one warning

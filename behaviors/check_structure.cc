@@ -117,6 +117,7 @@ void check_structure(LoadContext& context) {
   check_transitions(context, reach);
   check_shadowed(context, reach);
   check_loops(context, reach);
+  check_event_loops(context, reach);
   if (context.behavior.has_robot) check_contacts(context, reach);
 }
 

@@ -97,6 +97,7 @@ void check_reachability(LoadContext& context, const Reach& reach);  // unreachab
 void check_transitions(LoadContext& context, const Reach& reach);   // never-true, re-entry
 void check_shadowed(LoadContext& context, const Reach& reach);      // shadowed
 void check_loops(LoadContext& context, const Reach& reach);         // zero-time-loop, possible-loop
+void check_event_loops(LoadContext& context, const Reach& reach);   // possible-loop
 void check_contacts(LoadContext& context, const Reach& reach);      // contact-before
 void check_timing(LoadContext& context);  // too-short, cut-off, never-asked
 void check_events(LoadContext& context);  // never-raised, unheard

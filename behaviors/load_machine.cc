@@ -174,6 +174,12 @@ void load_done(LoadContext& context, int s) {
     if (info_of(context, c).name != node->scalar) continue;
     info.done = DoneRule::region;
     info.done_region = c;
+    if (info_of(context, c).kind == StateKind::parallel) {
+      context.warning(node->mark, "done-of-parallel",
+                      fmt::format("'{}' is parallel itself: `done` waits for a final child of a "
+                                  "region, and is never raised for it; listen to done.state.{}",
+                                  node->scalar, node->scalar));
+    }
     return;
   }
   context.error(node->mark, "unknown-state",

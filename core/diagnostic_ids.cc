@@ -34,6 +34,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"cut-off", kWarning, "a trajectory or contact transition that lasts longer than its state"},
     {"dead-end", kWarning, "a state that can never be left and is not final"},
     {"dimension", kError, "a value of another dimension than its place needs"},
+    {"done-of-parallel", kWarning, "`done:` names a region that is parallel itself"},
     {"duplicate", kError, "the same thing twice where once is meant"},
     {"duplicate-key", kError, "a key twice in one map"},
     {"empty", kError, "a file without content"},

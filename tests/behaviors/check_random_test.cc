@@ -100,7 +100,8 @@ Said what_is_said(const core::Diagnostics& diagnostics) {
     }
     const bool certain = problem.text.find("while") == std::string::npos &&
                          problem.text.find("unless") == std::string::npos &&
-                         problem.text.find("again") == std::string::npos;
+                         problem.text.find("again") == std::string::npos &&
+                         problem.text.find("raise the events") == std::string::npos;
     if (problem.id == "possible-loop" && certain) said.loops.insert(problem.mark.line);
   }
   return said;
