@@ -26,6 +26,18 @@ std::size_t knot_capacity(const Behavior& behavior) {
   return most;
 }
 
+// The arrays have room for far more than a behavior asks for.
+void copy_in_force(const tasks::ControlSet& from, tasks::ControlSet& to) noexcept {
+  to.contact_count = from.contact_count;
+  to.task_count = from.task_count;
+  to.axis_count = from.axis_count;
+  to.internal_count = from.internal_count;
+  std::copy_n(from.contacts.begin(), from.contact_count, to.contacts.begin());
+  std::copy_n(from.tasks.begin(), from.task_count, to.tasks.begin());
+  std::copy_n(from.axes.begin(), from.axis_count, to.axes.begin());
+  std::copy_n(from.internals.begin(), from.internal_count, to.internals.begin());
+}
+
 void clear_fresh(tasks::ControlSet& set) noexcept {
   for (int i = 0; i < set.task_count; ++i) set.tasks[at(i)].fresh = false;
   for (int i = 0; i < set.axis_count; ++i) set.axes[at(i)].fresh = false;
@@ -52,20 +64,32 @@ void ControlMerge::update(const Measure& measure, bool moved) noexcept {
   control_.transition_entered = false;
   clear_fresh(control_.primary);
   clear_fresh(control_.other);
-  if (moved) rebuild(measure);
+  if (moved && changed()) rebuild(measure);
   advance(*primary_, control_.primary, measure);
   if (control_.has_other) advance(*other_, control_.other, measure);
   weigh_transition();
 }
 
+// The merged control is that of another configuration, or a state that says where a reference
+// starts or a contact transition begins was entered again.
+bool ControlMerge::changed() const noexcept {
+  const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
+  if (primary_->spec != &spec) return true;
+  for (int k = 0; k < primary_->task_count; ++k) {
+    const TaskState& task = primary_->tasks[at(k)];
+    if (task.owner_serial != statechart_.entry_serial(task.spec->reference.owner)) return true;
+  }
+  return spec.transition >= 0 && !transition_goes_on(spec);
+}
+
 void ControlMerge::rebuild(const Measure& measure) noexcept {
-  other_first_ = control_.has_other && control_.other_weight > 0.5;
+  const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
+  other_first_ = control_.has_other && control_.other_weight > 0.5 && !transition_goes_on(spec);
   old_has_other_ = control_.has_other;
   std::swap(primary_, old_primary_);
   std::swap(other_, old_other_);
-  std::swap(*old_set_, control_.primary);
-  if (old_has_other_) std::swap(*old_other_set_, control_.other);
-  const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
+  copy_in_force(control_.primary, *old_set_);
+  if (old_has_other_) copy_in_force(control_.other, *old_other_set_);
   fill(*primary_, control_.primary, spec, measure);
   update_transition(spec, measure);
 }
@@ -134,7 +158,7 @@ void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec&
     out.axis = axis;
     out.slope = 0.0;
     out.fresh = kept.slot < 0;
-    fill_axis(bank, set, command, spec, k, measure);
+    fill_axis(bank, set, command, spec, k, kept, measure);
   }
   for (int k = 0; k < spec.axes.count; ++k) {  // when `entry` is known of all axes
     if (bank.axes[at(command.first_axis + k)].begins) start_axis(bank, command, spec, k, measure);
@@ -145,11 +169,10 @@ void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec&
 // the task has changed; else it starts from what was the reference, or from what is measured.
 void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
                              const tasks::TaskCommand& command, const TaskSpec& spec, int k,
-                             const Measure& measure) noexcept {
+                             const Kept& kept, const Measure& measure) noexcept {
   const int axis = behavior_.axes[at(spec.axes.first + k)].axis;
   const int slot = command.first_axis + k;
   AxisState& state = bank.axes[at(slot)];
-  const Kept kept = find_kept(spec.instance, axis);
   state = {};
   state.begins = true;
   if (kept.slot < 0) {

@@ -1,6 +1,7 @@
 // The control that the active configuration asks for: contacts, tasks with references and gains,
 // internal forces, and the other control law while a contact transition is under way. Rebuilt when
-// states change, evaluated in every tick; allocates nothing after construction.
+// states that control change or are entered again, evaluated in every tick; allocates nothing after
+// construction.
 #pragma once
 
 #include <array>
@@ -63,7 +64,12 @@ class ControlMerge {
     int slot = -1;
   };
 
+  // Whether the transitions of this tick can have changed anything that is merged: else rebuild()
+  // would find everything as it is.
+  bool changed() const noexcept;
   void rebuild(const Measure& measure) noexcept;
+  // The contact transition under way is still the one that is asked for.
+  bool transition_goes_on(const ControlSpec& spec) const noexcept;
   void update_transition(const ControlSpec& spec, const Measure& measure) noexcept;
   void begin_transition(const TransitionSpec& transition, const Measure& measure) noexcept;
   void fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec,
@@ -71,7 +77,7 @@ class ControlMerge {
   void fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index,
                  const Measure& measure) noexcept;
   void fill_axis(Bank& bank, const tasks::ControlSet& set, const tasks::TaskCommand& command,
-                 const TaskSpec& spec, int k, const Measure& measure) noexcept;
+                 const TaskSpec& spec, int k, const Kept& kept, const Measure& measure) noexcept;
   Kept find_kept(int instance, int axis) const noexcept;
   void advance(Bank& bank, tasks::ControlSet& set, const Measure& measure) noexcept;
   void advance_task(Bank& bank, tasks::ControlSet& set, int index, const Measure& measure) noexcept;

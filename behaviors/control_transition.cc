@@ -12,6 +12,13 @@
 #include "core/index.h"
 
 namespace footfall::behaviors {
+bool ControlMerge::transition_goes_on(const ControlSpec& spec) const noexcept {
+  if (transition_ < 0 || spec.transition < 0) return false;
+  const int owner = behavior_.contact_transitions[at(spec.transition)].owner;
+  return behavior_.contact_transitions[at(transition_)].owner == owner &&
+         transition_serial_ == statechart_.entry_serial(owner);
+}
+
 void ControlMerge::update_transition(const ControlSpec& spec, const Measure& measure) noexcept {
   if (spec.transition < 0) {
     control_.has_other = false;
@@ -19,17 +26,13 @@ void ControlMerge::update_transition(const ControlSpec& spec, const Measure& mea
     transition_ = -1;
     return;
   }
-  const TransitionSpec& now = behavior_.contact_transitions[at(spec.transition)];
-  const bool goes_on = transition_ >= 0 &&
-                       behavior_.contact_transitions[at(transition_)].owner == now.owner &&
-                       transition_serial_ == statechart_.entry_serial(now.owner);
+  const bool goes_on = transition_goes_on(spec);
   transition_ = spec.transition;
   if (goes_on) {
     std::swap(other_, old_other_);
-    if (old_has_other_) std::swap(*old_other_set_, control_.other);
     return;
   }
-  begin_transition(now, measure);
+  begin_transition(behavior_.contact_transitions[at(spec.transition)], measure);
 }
 
 void ControlMerge::begin_transition(const TransitionSpec& transition,
