@@ -83,8 +83,8 @@ class MermaidWriter {
     if (info.kind == StateKind::history_shallow) title = "H";
     if (info.kind == StateKind::history_deep) title = "H*";
     const std::vector<std::string> lines = details_of(info, kMermaidDetailWidth);
-    if (!info.children.empty()) {
-      for (const std::string& line : lines) title += "<br/>" + escape(line);
+    if (!info.children.empty()) {  // one line: Mermaid draws what is inside over a second one
+      for (const std::string& line : lines) title += " · " + escape(line);
       out_ += fmt::format("{}state \"{}\" as s{} {{\n", indent, title, s);
       write_inside(s, indent + "  ");
       out_ += indent + "}\n";

@@ -119,6 +119,15 @@ TEST(Diagram, MermaidSeparatesRegionsAndEscapesWhatItsGrammarUses) {
   }
 }
 
+// Mermaid 12 draws what is inside a composite state over the second line of its title.
+TEST(Diagram, ATitleOfACompositeStateIsOneLineInMermaid) {
+  const std::string mermaid = to_mermaid(diagram_of(
+      "behavior: 1\nmachine:\n  states:\n    a: {on_entry: [{mark: m}], after: 1 s, to: b, states: "
+      "{c: {on_entry: [{mark: n}]}}}\n    b: {type: final}\n"));
+  EXPECT_THAT(mermaid, HasSubstr("state \"a · entry / mark m\" as s1 {"));
+  EXPECT_THAT(mermaid, HasSubstr("state \"c<br/>entry / mark n\" as s2"));
+}
+
 TEST(Diagram, AClosedStateIsOneBoxWithItsOwnTransitions) {
   std::string why;
   const auto closed = close_states(diagram_of(kParallel), {"machine"}, why);
