@@ -126,7 +126,8 @@ constexpr KeySpec kTrajectoryKeyRows[] = {
         .only(kGoing),
     key("over", computed(quantity(kTime)), "how long it takes, read at entry").only(kLasting),
     key("end_velocity", computed(by_axis(any_quantity("m/s or rad/s"))),
-        "velocity at the end, kept afterwards")
+        "velocity at the end, kept afterwards; read at entry, as `to` is: the whole way depends on "
+        "it")
         .otherwise("0")
         .only(kArriving),
     key("retarget", boolean(), quantity(kNone, "a part of `over`, at most 95 %"),
