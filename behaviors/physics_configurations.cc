@@ -126,7 +126,14 @@ struct Arrival {
 
 class Succession {
  public:
-  explicit Succession(const Behavior& behavior) : b_(behavior), walk_(behavior) {}
+  explicit Succession(const Behavior& behavior)
+      : b_(behavior), walk_(behavior), done_states_(behavior.events.size(), -1) {
+    for (std::size_t s = 0; s < b_.states.size(); ++s) {
+      const int event = b_.states[s].done_event;
+      if (event < 0) continue;
+      done_states_[at(b_.event_ranks[at(event)])] = static_cast<int>(s);
+    }
+  }
 
   std::vector<ControlChange> all() {
     std::vector<ControlChange> changes;
@@ -164,16 +171,20 @@ class Succession {
   // they were passed through when they were entered.
   std::vector<int> starts(int index) const {
     const TransitionInfo& transition = b_.transitions[at(index)];
+    std::vector<int> parents;
+    const Range heard = b_.heard_events[at(index)];
+    for (int k = heard.first; k < heard.end(); ++k) {
+      const Range ranks = b_.heard_ranks[at(k)];
+      for (int rank = ranks.first; rank < ranks.end(); ++rank) {
+        const int done = done_states_[at(rank)];
+        if (done < 0 || b_.states[at(done)].kind != StateKind::compound) return {transition.source};
+        parents.push_back(done);
+      }
+    }
+    std::sort(parents.begin(), parents.end());
     std::vector<int> finals;
-    for (std::size_t e = 0; transition.has_event && e < b_.events.size(); ++e) {
-      const auto event = static_cast<int>(e);
-      if (!b_.matches(index, event)) continue;
-      const auto done = std::find_if(b_.states.begin(), b_.states.end(),
-                                     [event](const auto& s) { return s.done_event == event; });
-      if (done == b_.states.end()) return {transition.source};
-      if (done->kind != StateKind::compound) return {transition.source};
-      const auto parent = static_cast<int>(done - b_.states.begin());
-      for (int c = parent + 1; c < done->end; c = b_.states[at(c)].end) {
+    for (const int parent : parents) {
+      for (int c = parent + 1; c < b_.states[at(parent)].end; c = b_.states[at(c)].end) {
         if (b_.states[at(c)].kind == StateKind::final) finals.push_back(c);
       }
     }
@@ -254,6 +265,7 @@ class Succession {
 
   const Behavior& b_;
   Walker walk_;
+  std::vector<int> done_states_;  // by rank of the event: whose done.state it is, -1: none
 };
 
 }  // namespace
