@@ -188,8 +188,8 @@ TEST_F(ScenarioLoader, AValueOfTheWrongKindSizeOrRangeIsRefused) {
             "4:38: error: expected 'lift_time' from 0.08 to 0.4 s, got '1 s'\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal: [1 m]}}]"),
             "4:33: error: expected 2 values for 'goal', got 1\n");
-  EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.x: 11 m}}]"),
-            "4:35: error: expected 'goal.x' from -10 to 10 m, got '11 m'\n");
+  EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.x: 1001 m}}]"),
+            "4:35: error: expected 'goal.x' from -1000 to 1000 m, got '1001 m'\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.x: [1 m, 2 m]}}]"),
             "4:35: error: expected 1 value for 'goal.x', got 2\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.z: 1 m}}]"),
