@@ -9,6 +9,7 @@
 #include <deque>
 
 #include "behaviors/check_structure.h"
+#include "core/index.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 constexpr int kMaxLooks = 2'000'000;  // at transitions: beyond, the check is silent, not slow
 constexpr std::size_t kMaxSteps = 64;
 constexpr std::size_t kMaxQueue = 32;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Where the machine is between two micro steps.
 struct Place {
@@ -27,7 +26,7 @@ struct Place {
 };
 
 // A micro step: which transition is taken, and the event that does it, -1: none.
-struct Step {
+struct MicroStep {
   int transition = -1;
   int event = -1;
 };
@@ -61,8 +60,8 @@ class EventLoopCheck {
   void follow(int leaf, int first) {
     Place now{leaf, {}};
     std::vector<Place> places;
-    std::vector<Step> steps;
-    Step step{first, -1};
+    std::vector<MicroStep> steps;
+    MicroStep step{first, -1};
     while (steps.size() < kMaxSteps && take(step.transition, now)) {
       steps.push_back(step);
       const auto seen = std::find(places.begin(), places.end(), now);
@@ -78,7 +77,7 @@ class EventLoopCheck {
 
   // The micro step that surely comes next; its event is taken from the queue. False: none, or none
   // that is sure.
-  bool next(Place& now, Step& step) {
+  bool next(Place& now, MicroStep& step) {
     if (!select(now.leaf, -1, step.transition)) return false;
     step.event = -1;
     while (step.transition < 0) {
@@ -150,10 +149,12 @@ class EventLoopCheck {
 
   // `places`: before each step of the loop. One of event-less transitions only is reported
   // elsewhere.
-  void say(const std::vector<Step>& steps, const std::vector<Place>& places) {
-    if (std::all_of(steps.begin(), steps.end(), [](Step step) { return step.event < 0; })) return;
-    const auto first = std::min_element(steps.begin(), steps.end(),
-                                        [](Step a, Step b) { return a.transition < b.transition; });
+  void say(const std::vector<MicroStep>& steps, const std::vector<Place>& places) {
+    if (std::all_of(steps.begin(), steps.end(), [](MicroStep step) { return step.event < 0; }))
+      return;
+    const auto first = std::min_element(steps.begin(), steps.end(), [](MicroStep a, MicroStep b) {
+      return a.transition < b.transition;
+    });
     const std::size_t count = steps.size(), start = at(static_cast<int>(first - steps.begin()));
     std::string text;
     for (std::size_t k = 0; k < count; ++k) {

@@ -8,14 +8,14 @@ namespace footfall::tests {
 namespace {
 
 // States a (line 4) and b (line 5), and what more there is.
-std::string two(const std::string& a, const std::string& b, const std::string& more = "") {
+std::string two_states(const std::string& a, const std::string& b, const std::string& more = "") {
   return "behavior: 1\nmachine:\n  states:\n    a: {" + a + "}\n    b: {" + b + "}\n" + more +
          "events: {e: ''}\n";
 }
 constexpr const char* kBack = "transitions: [{on: go, to: a, do: [{raise: go}]}]";
 
 TEST(CheckEventLoops, TransitionsThatRaiseEachOthersEventAreALoop) {
-  EXPECT_EQ(problems(two("transitions: [{on: [e, go], to: b, do: [{raise: go}]}]", kBack)),
+  EXPECT_EQ(problems(two_states("transitions: [{on: [e, go], to: b, do: [{raise: go}]}]", kBack)),
             "b.yaml:4:23: warning: 'a' -> (go) 'b' -> (go) 'a' is a loop that takes no time: its "
             "transitions raise the events that take them; it needs an `after` or a condition that "
             "ends it\n");
@@ -25,43 +25,45 @@ TEST(CheckEventLoops, TheRaiseMayBeAtTheExitOrTheEntry) {
                     back = "transitions: [{on: go, to: a}]";
   for (const char* key : {"on_entry", "on_exit"}) {
     const std::string raise = std::string(", ") + key + ": [{raise: go}]";
-    EXPECT_TRUE(problems(two(take + raise, back + raise))
+    EXPECT_TRUE(problems(two_states(take + raise, back + raise))
                     .starts_with("b.yaml:4:23: warning: 'a' -> (go) 'b' -> (go) 'a' is a loop"))
         << key;
   }
 }
 TEST(CheckEventLoops, ActionsAloneMayKeepThemselvesGoing) {
-  EXPECT_TRUE(problems(two("transitions: [{on: e, do: [{raise: e}]}], after: 1 s, to: b",
-                           "after: 1 s, to: a"))
+  EXPECT_TRUE(problems(two_states("transitions: [{on: e, do: [{raise: e}]}], after: 1 s, to: b",
+                                  "after: 1 s, to: a"))
                   .starts_with("b.yaml:4:23: warning: 'a' -> (e) 'a' is a loop"));
 }
 TEST(CheckEventLoops, DoneOfAStateThatIsDoneAtOnceIsALoop) {
-  EXPECT_TRUE(problems(two("transitions: [{on: done.state.a, to: a}], states: {f: {type: final}}, "
-                           "after: 1 s, to: b",
-                           "after: 1 s, to: a"))
-                  .starts_with("b.yaml:4:23: warning: 'a.f' -> (done.state.a) 'a.f' is a loop"));
+  EXPECT_TRUE(
+      problems(two_states("transitions: [{on: done.state.a, to: a}], states: {f: {type: final}}, "
+                          "after: 1 s, to: b",
+                          "after: 1 s, to: a"))
+          .starts_with("b.yaml:4:23: warning: 'a.f' -> (done.state.a) 'a.f' is a loop"));
 }
 TEST(CheckEventLoops, EventlessStepsMayBePartOfIt) {
-  EXPECT_TRUE(problems(two("transitions: [{on: [e, go], to: b}]",
-                           "transitions: [{when: true, to: a, do: [{raise: go}]}]"))
+  EXPECT_TRUE(problems(two_states("transitions: [{on: [e, go], to: b}]",
+                                  "transitions: [{when: true, to: a, do: [{raise: go}]}]"))
                   .starts_with("b.yaml:4:23: warning: 'a' -> (go) 'b' -> 'a' is a loop"));
 }
 // What the check says is what happens: the tick is cut off, or is not.
 TEST(CheckEventLoops, WhatEndsByItselfIsNot) {
   const std::string go = "transitions: [{on: [e, go], to: b, do: [{raise: go}]}]";
   const std::string clean[] = {
-      two(go, "transitions: [{on: go, to: a}]"),  // raises nothing
-      two(go,
-          "transitions: [{on: go, when: $v < 3, to: a, do: [{set: {v: '= $v + 1'}}, {raise: "
-          "go}]}], after: 1 s, to: a",
-          "parameters: {v: 0}\n"),  // a condition ends it
-      two(go, "transitions: [{on: go, to: a, do: [{set: {w: '= $w + 1'}}, {raise: go}]}]",
-          "parameters: {w: {value: 0, range: [0, 3]}}\n"),                        // so does a range
-      two(go, "transitions: [{on: go, after: 1 ms, to: a, do: [{raise: go}]}]"),  // takes time
-      two(go, "transitions: [{when: true, to: c}, {on: go, to: a, do: [{raise: go}]}]",
-          "    c: {after: 1 s, to: a}\n"),  // left before the event
-      two(go, "transitions: [{on: go, to: f, do: [{raise: go}]}, {after: 1 s, to: a}]",
-          "    f: {type: final}\n"),  // the end of the run
+      two_states(go, "transitions: [{on: go, to: a}]"),  // raises nothing
+      two_states(go,
+                 "transitions: [{on: go, when: $v < 3, to: a, do: [{set: {v: '= $v + 1'}}, {raise: "
+                 "go}]}], after: 1 s, to: a",
+                 "parameters: {v: 0}\n"),  // a condition ends it
+      two_states(go, "transitions: [{on: go, to: a, do: [{set: {w: '= $w + 1'}}, {raise: go}]}]",
+                 "parameters: {w: {value: 0, range: [0, 3]}}\n"),  // so does a range
+      two_states(go,
+                 "transitions: [{on: go, after: 1 ms, to: a, do: [{raise: go}]}]"),  // takes time
+      two_states(go, "transitions: [{when: true, to: c}, {on: go, to: a, do: [{raise: go}]}]",
+                 "    c: {after: 1 s, to: a}\n"),  // left before the event
+      two_states(go, "transitions: [{on: go, to: f, do: [{raise: go}]}, {after: 1 s, to: a}]",
+                 "    f: {type: final}\n"),  // the end of the run
   };
   for (const std::string& text : clean) {
     EXPECT_EQ(problems(text).find("is a loop"), std::string::npos) << text << problems(text);
@@ -84,7 +86,8 @@ TEST(CheckEventLoops, RegionsAreNotJudged) {
 
 // The same event again and again, as often as there are micro steps.
 TEST(CheckEventLoops, ALoopThatIsFoundIsCutOffWhenItRuns) {
-  const auto behavior = load(two("transitions: [{on: [e, go], to: b, do: [{raise: go}]}]", kBack));
+  const auto behavior =
+      load(two_states("transitions: [{on: [e, go], to: b, do: [{raise: go}]}]", kBack));
   behavior->micro_steps = 64;
   behaviors::Statechart chart(*behavior, nullptr, behavior->values);
   chart.start(0);

@@ -13,7 +13,7 @@ namespace {
 using tasks::TaskType;
 
 // A region that stands, lifts and lowers; a lamp that `blink` switches, with what it does `more`.
-std::string regions(const std::string& more = "") {
+std::string legs_and_lamp(const std::string& more = "") {
   const std::string text = R"(behavior: 1
 robot: hume
 events: {blink: ""}
@@ -68,7 +68,7 @@ void expect_same(const tasks::ControlSet& a, const tasks::ControlSet& b) {
 }
 
 TEST(MachineRegions, ARegionWithoutControlLeavesControlToTheLastBitAsItIs) {
-  Runner dark(load(regions())), blinking(load(regions()));
+  Runner dark(load(legs_and_lamp())), blinking(load(legs_and_lamp()));
   const int blink = blinking.behavior->find_event("blink");
   for (Runner* run : {&dark, &blinking}) {
     run->measure.set(TaskType::com_position, -1, 2, 0.9);
@@ -99,7 +99,7 @@ TEST(MachineRegions, ARegionWithoutControlLeavesControlToTheLastBitAsItIs) {
 
 TEST(MachineRegions, AnotherTaskBesideAContactTransitionStartsNoReferenceAnew) {
   const std::string damping = ", tasks: {d: {type: joint_damping, priority: 2, gains: {kd: 1}}}";
-  Runner dark(load(regions(damping))), blinking(load(regions(damping)));
+  Runner dark(load(legs_and_lamp(damping))), blinking(load(legs_and_lamp(damping)));
   const int blink = blinking.behavior->find_event("blink");
   for (Runner* run : {&dark, &blinking}) {
     run->measure.set(TaskType::com_position, -1, 2, 0.9);
