@@ -481,6 +481,7 @@ class Graph(Case):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
             picture = xml.dom.minidom.parse(str(self.folder / "p.svg"))
             texts = [t.firstChild.data for t in picture.getElementsByTagName("text")]
+        self.refused(self.footfall("config", "balance", "--explain", "goal"), 2, "parameters.goal")
             for state in ("limp", "step", "right_foot", "left_foot", "lift", "land", "down"):
                 self.assertIn(state, texts)
 
