@@ -504,6 +504,20 @@ class Help(Case):
     def test_version(self):
         result = self.footfall("--version")
         self.assertEqual(result.returncode, 0)
+    def test_a_behavior_that_derives(self):
+        self.assertEqual(self.footfall("new", "behavior", "mine", "--base", "balance").returncode, 0)
+        text = (self.folder / "mine.yaml").read_text()
+        self.assertTrue(text.startswith("base: balance\n"))
+        self.assertIn("lift_time: {value: 145 ms}", text)
+        (self.folder / "sub").mkdir()
+        self.assertEqual(self.footfall("new", "behavior", "sub/yours", "--base", "mine.yaml").returncode, 0)
+        self.assertTrue((self.folder / "sub" / "yours.yaml").read_text().startswith("base: ../mine.yaml\n"))
+        result = self.footfall("check", "--strict", "mine.yaml", "sub/yours.yaml")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        result = self.footfall("new", "behavior", "x", "--base", "balanec")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("balanec", result.stderr)
+
         self.assertRegex(result.stdout, r"^\d+\.\d+\.\d+\n$")
 
     def test_every_command_has_help_with_an_example(self):
