@@ -542,3 +542,12 @@ class Help(Case):
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    def test_signals_of_a_filter_parameters_and_gains(self):
+        result = self.footfall("signals", "balance", "gains.single.*.kp")
+        self.assertEqual(len(result.stdout.splitlines()), 3)
+        self.assertRegex(result.stdout, r"gains\.single\.height\.kp +1/s\^2 +gain 270, range 0 to 800, live")
+        result = self.footfall("signals", "balance", "lift_time")
+        self.assertRegex(result.stdout, r"\$lift_time +s +parameter 0\.145, range 0\.08 to 0\.4, live")
+        result = self.footfall("signals", "balance", "lift_tiem")
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+
