@@ -1,5 +1,6 @@
 """The `footfall` command from outside: cli_test.py BINARY SOURCE_DIR [CLASS...]."""
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -186,6 +187,35 @@ class Run(Case):
         self.assertTrue(os.path.isfile(self.folder / summary["log"]))
         for name in ("roll", "pitch", "yaw", "height"):
             self.assertLessEqual(summary["error"][name]["rms"], summary["error"][name]["max"])
+
+    def test_every_key_of_the_summary_is_in_the_guide(self):
+        result = self.run_it("balance", "--for", "0.1s", "--json", "--quiet")
+        guide = pathlib.Path(SOURCE, "docs/behaviors.md").read_text()
+        for key in json.loads(result.stdout):
+            self.assertRegex(guide, rf"\n\| (`\w+`, )*`{key}`")
+
+    def test_it_says_where_it_went_and_why_it_fell(self):
+        result = self.run_it("balance", "--for", "5s", "--push", "800,0.2,40,0.3", "--json")
+        summary = json.loads(result.stdout.splitlines()[-1])
+        start, end = summary["start_m"], summary["end_m"]
+        self.assertAlmostEqual(summary["moved_m"], math.dist(start, end), places=9)
+        self.assertGreaterEqual(summary["path_length_m"], summary["moved_m"] - 1e-9)
+        cause = summary["cause"]
+        self.assertIn(cause["criterion"], ("height", "tilt", "body_contact"))
+        self.assertEqual(cause["time_s"], summary["time_s"])
+        for text in ("FELL", cause["text"], "moved"):
+            self.assertIn(text, result.stderr)
+
+    def test_what_the_behavior_says_is_printed(self):
+        path = self.write("b.yaml", STAND.replace("stand:\n", "stand:\n      on_entry: [{log: \"stands at {time} s\"}]\n"))
+        result = self.run_it(path, "--for", "0.1s")
+        self.assertRegex(result.stdout, r"0\.00\d s +stands at ")
+        self.assertNotIn("stands at", self.run_it(path, "--for", "0.1s", "--quiet").stdout)
+
+    def test_a_goal_that_is_not_live_cannot_be_moved(self):
+        goal = os.path.join(SOURCE, "examples/forward.yaml")
+        self.refused(self.run_it(goal, "--goal", "1,0"), 2, "goal", "not live", "--set")
+        self.refused(self.run_it("balance", "--goal", "1001,0"), 2, "1001", "-1000 to 1000")
 
     def test_quiet_json_is_one_line_and_no_log_writes_nothing(self):
         before = set(self.folder.iterdir())
