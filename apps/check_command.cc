@@ -114,7 +114,8 @@ std::string first_key(const std::string& path) {
     break;
   }
   core::Diagnostics ignored;
-  const core::YamlNode root = core::load_yaml_with_base(path, ignored);
+  const core::YamlNode root =
+      core::load_yaml_with_base(path, ignored, nullptr, behaviors::library_folders(search_path()));
   return root.is_map() && !root.entries.empty() ? root.entries.front().key : std::string();
 }
 

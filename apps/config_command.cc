@@ -43,8 +43,9 @@ const core::KeyTable* table_of(const core::YamlNode& root) {
 
 void load(const ConfigOptions& options, Config& config) {
   const auto settings = split_settings(options.set, config.diagnostics);
-  config.root = core::load_yaml_with_base(find_behavior_file(options.file), config.diagnostics,
-                                          &config.history);
+  config.root =
+      core::load_yaml_with_base(find_behavior_file(options.file), config.diagnostics,
+                                &config.history, behaviors::library_folders(search_path()));
   if (config.diagnostics.has_errors()) return;
   config.table = table_of(config.root);
   config.behavior = config.table == behaviors::kBehaviorFile.root;
@@ -138,6 +139,17 @@ void print_json(const core::Explanation& explanation, const std::vector<std::str
   fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
+// `goal` for `parameters.goal`: the path of a key that was given by its last part alone.
+std::string whole_path(const core::YamlNode& root, const std::string& key) {
+  const std::string head = key.substr(0, key.find('.'));
+  for (const core::YamlEntry& section : root.entries) {
+    if (section.value.is_map() && section.value.find(head) != nullptr) {
+      return section.key + "." + key;
+    }
+  }
+  return {};
+}
+
 int explain(const ConfigOptions& options, Config& config) {
   core::Explanation explanation =
       core::explain(config.root, config.history, config.table, options.key);
@@ -152,6 +164,8 @@ int explain(const ConfigOptions& options, Config& config) {
     made_from = std::move(state.made_from);
   }
   if (!explanation.problem.empty()) {
+    const std::string whole = whole_path(config.root, options.key);
+    if (!whole.empty()) explanation.problem += fmt::format(" (did you mean '{}'?)", whole);
     fmt::print(stderr, "--explain {}: error: {}\n", options.key, explanation.problem);
     return kBadInput;
   }

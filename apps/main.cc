@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   footfall::apps::add_config_command(app, exit_code);
   footfall::apps::add_new_command(app, exit_code);
   footfall::apps::add_report_command(app, exit_code);
+  footfall::apps::add_events_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -9,6 +9,7 @@
 #include "apps/commands.h"
 #include "apps/output_file.h"
 #include "core/value_reader.h"
+#include "core/yaml_write.h"
 
 namespace footfall::apps {
 namespace {
@@ -21,7 +22,7 @@ struct InputError : std::runtime_error {
 };
 
 struct NewOptions {
-  std::string kind, name, from, robot;
+  std::string kind, name, from, base, robot;
 };
 
 // `FOLDER/NAME` in the search path; empty if it is nowhere.
@@ -74,10 +75,58 @@ void expect_good_behavior(const std::string& text, const std::string& path) {
   throw InputError("nothing was written: it would not load there");
 }
 
+void write_behavior(const std::string& text, const fs::path& path) {
+  expect_good_behavior(text, path.string());
+  write_whole_file(path.string(), text);
+  fmt::print("{} written; now: footfall check {}\n", path.string(), path.string());
+}
+
+// `base:` as the new file writes it: a name of the library as it is, a file as seen from there.
+std::string base_as_written(const NewOptions& options, const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(options.base, ignored)) return options.base;
+  const fs::path folder = fs::absolute(path).parent_path();
+  return fs::absolute(options.base).lexically_normal().lexically_relative(folder).string();
+}
+
+// A file that derives from another, with what it could change as comments.
+std::string derived_text(const NewOptions& options, const fs::path& path) {
+  core::Diagnostics diagnostics;
+  const core::YamlNode base =
+      core::load_yaml_with_base(find_behavior_file(options.base), diagnostics, nullptr,
+                                behaviors::library_folders(search_path()));
+  if (diagnostics.has_errors()) {
+    print_diagnostics(diagnostics);
+    throw InputError(fmt::format("--base {}: expected a behavior's file or a name out of {}",
+                                 options.base,
+                                 fmt::join(behaviors::library_folders(search_path()), ", ")));
+  }
+  std::string text = fmt::format("base: {}\n", base_as_written(options, path));
+  if (!options.robot.empty()) text += fmt::format("robot: {}\n", options.robot);
+  text +=
+      "# What differs from the base goes here: maps merge by key, all else is replaced whole,\n"
+      "# `NAME: off` removes, `KEY+:` appends to a list. `footfall config` on this file shows the "
+      "result.\n";
+  const core::YamlNode* parameters = base.find("parameters");
+  if (parameters == nullptr || !parameters->is_map()) return text;
+  text += "# parameters:\n";
+  for (const core::YamlEntry& entry : parameters->entries) {
+    const core::YamlNode* value = entry.value.is_map() ? entry.value.find("value") : &entry.value;
+    if (value != nullptr) {
+      text += fmt::format("#   {}: {{value: {}}}\n", entry.key, core::to_flow_yaml(*value));
+    }
+  }
+  return text;
+}
+
 void new_behavior(const NewOptions& options) {
   const std::string name = stem(options);
   const fs::path path = fs::path(options.name).parent_path() / (name + ".yaml");
   refuse_existing(path);
+  if (!options.base.empty()) {
+    write_behavior(derived_text(options, path), path);
+    return;
+  }
   const std::string from = options.from.empty() ? "squat" : options.from;
   std::string source = find_data("behaviors/scaffolds/" + from + ".yaml");
   if (source.empty()) source = find_behavior_file(from);
@@ -88,9 +137,7 @@ void new_behavior(const NewOptions& options) {
   }
   std::string text = read_whole_file(source);
   if (!options.robot.empty()) text = with_value(text, "robot", options.robot);
-  expect_good_behavior(text, path.string());
-  write_whole_file(path.string(), text);
-  fmt::print("{} written; now: footfall check {}\n", path.string(), path.string());
+  write_behavior(text, path);
 }
 
 void new_robot(const NewOptions& options) {
@@ -146,10 +193,17 @@ void add_new_command(CLI::App& app, int& exit_code) {
           "NAME", options->name,
           "behavior: writes NAME.yaml; robot: writes robots/NAME/ (with a folder in NAME: there)")
       ->required();
-  command->add_option("--from", options->from,
-                      "behavior: squat (default), chart, or a behavior's file or name to copy");
+  auto* from =
+      command->add_option("--from", options->from,
+                          "behavior: squat (default), chart, or a behavior's file or name to copy");
+  command
+      ->add_option("--base", options->base,
+                   "behavior: a behavior's file or name to derive from, by `base:`")
+      ->excludes(from);
   command->add_option("--robot", options->robot, "behavior: the robot it is for, instead of hume");
-  command->footer("Example: footfall new behavior my_squat\nExample: footfall new robot my_biped");
+  command->footer(
+      "Example: footfall new behavior my_squat\nExample: footfall new behavior my_walk --base "
+      "balance_best\nExample: footfall new robot my_biped");
   command->callback([options, &exit_code] { exit_code = make(*options); });
 }
 

@@ -22,13 +22,12 @@ std::string text_beside(const std::filesystem::path& log, const char* name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The folder of a log stands for the log in it.
+}  // namespace
+
 std::filesystem::path log_path(const std::string& argument) {
   const std::filesystem::path path(argument);
   return std::filesystem::is_directory(path) ? path / "log.mcap" : path;
 }
-
-}  // namespace
 
 int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
   const std::filesystem::path path = log_path(arguments.log);

@@ -15,6 +15,7 @@
 #include "apps/report_command.h"
 #include "apps/run_options.h"
 #include "core/allocation_count.h"
+#include "core/text_check.h"
 #include "engine/log_writer.h"
 #include "hal/stub_backend.h"
 #include "lab/run.h"
@@ -116,21 +117,69 @@ void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& 
   }
 }
 
+// The parameter that is the goal of the first planner; lab::has_goal holds.
+const behaviors::ParameterInfo& goal_parameter(const behaviors::Behavior& behavior) {
+  const int slot = behavior.planners.front().goal_slot;
+  return *std::ranges::find_if(behavior.parameters, [slot](const auto& info) {
+    return slot >= info.slot && slot < info.slot + info.size;
+  });
+}
+
+// The options move the goal as an operator would, so it has to be live.
+void check_goal_is_live(const behaviors::Behavior& behavior, const std::string& option) {
+  const behaviors::ParameterInfo& goal = goal_parameter(behavior);
+  if (goal.live) return;
+  throw InputError(fmt::format(
+      "{}: error: parameter '{}' of '{}' is not live{}; --set {}=\"[1 m, 0 m]\" sets where it {}",
+      option, goal.name, behavior.name, goal.variable ? ": the behavior's own actions set it" : "",
+      goal.name, goal.variable ? "begins" : "is"));
+}
+
+void check_goal_range(const behaviors::Behavior& behavior, const std::array<double, 2>& values) {
+  const behaviors::ParameterInfo& goal = goal_parameter(behavior);
+  for (const double value : values) {
+    if (!goal.has_range() || (value >= goal.min && value <= goal.max)) continue;
+    throw InputError(fmt::format("--goal: error: {:g} is outside the range of '{}', {:g} to {:g}",
+                                 value, goal.name, goal.min, goal.max));
+  }
+}
+
 void set_goal(const RunOptions& options, const behaviors::Behavior& behavior, lab::RunSpec& spec) {
   if (options.goal.empty() && options.goal_velocity.empty()) return;
   if (!lab::has_goal(behavior)) {
     throw InputError("--goal: error: '" + behavior.name +
                      "' has no planner whose goal is a parameter");
   }
+  check_goal_is_live(behavior, options.goal.empty() ? "--goal-velocity" : "--goal");
   std::string error;
   if (!options.goal.empty()) {
     spec.goal = sim::parse_vector2(options.goal, core::kLength, error);
     if (!spec.goal) throw InputError("--goal: error: " + error);
+    check_goal_range(behavior, *spec.goal);
   }
   if (!options.goal_velocity.empty()) {
     spec.goal_velocity = sim::parse_vector2(options.goal_velocity, core::kVelocity, error);
     if (!spec.goal_velocity) throw InputError("--goal-velocity: error: " + error);
   }
+}
+
+// Prints what the behavior says, as it says it; a chatty one must not drown the summary.
+std::function<void(double, const std::string&)> said_printer(const RunOptions& options) {
+  constexpr int kMost = 50;
+  const bool status = isatty(STDERR_FILENO) != 0;
+  std::FILE* stream = options.json ? stderr : stdout;
+  const bool logged = !options.no_log;
+  return [stream, status, logged, said = 0](double time, const std::string& text) mutable {
+    if (++said > kMost + 1) return;
+    if (status) std::fputs("\r\033[K", stderr);
+    if (said <= kMost) {
+      fmt::print(stream, "  {:8.3f} s   {}\n", time, core::on_one_line(text));
+    } else {
+      fmt::print(stream, "  ... and more{}\n",
+                 logged ? "; all of it: footfall events LOG --kind log" : "");
+    }
+    std::fflush(stream);
+  };
 }
 
 lab::RunSpec make_spec(const RunOptions& options) {
@@ -144,6 +193,7 @@ lab::RunSpec make_spec(const RunOptions& options) {
     spec.arm_allocations = core::arm_allocation_count;
     spec.allocations = core::allocation_count;
   }
+  if (!options.quiet) spec.said = said_printer(options);
   if (isatty(STDERR_FILENO) && !options.quiet) {
     spec.status = [](const lab::RunStatus& s) {
       std::fprintf(stderr, "\r  t %7.2f s   step %5lld   %5.1f x real time   %-40.40s", s.time,

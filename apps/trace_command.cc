@@ -1,10 +1,13 @@
 // `footfall trace`: the statechart alone, without a robot.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 
 #include "apps/commands.h"
 #include "behaviors/trace.h"
+#include "core/text_check.h"
 
 namespace footfall::apps {
 namespace {
@@ -19,6 +22,10 @@ int trace_file(const std::string& file, const std::string& events, const std::st
     std::fputs(diagnostics.to_string().c_str(), stderr);
     if (!read) return kBadInput;
     steps = *read;
+  }
+  for (const std::string& text : behaviors::unknown_events(*behavior, steps)) {
+    fmt::print(stderr, "{}: warning: {}\n", script.empty() ? "--events" : script,
+               core::on_one_line(text));
   }
   behaviors::trace(*behavior, steps, std::cout);
   return kGood;

@@ -256,13 +256,13 @@ std::optional<Diagram> load(core::YamlNode root, const std::string& path,
 
 std::optional<Diagram> load_diagram(const std::string& path, const LoadOptions& options,
                                     core::Diagnostics& diagnostics) {
-  return load(core::load_yaml_with_base(path, diagnostics), path, options, diagnostics);
+  return load(load_tree(path, options, diagnostics), path, options, diagnostics);
 }
 
 std::optional<Diagram> load_diagram_text(std::string_view text, const std::string& name,
                                          const LoadOptions& options,
                                          core::Diagnostics& diagnostics) {
-  return load(core::load_yaml_text_with_base(text, name, diagnostics), name, options, diagnostics);
+  return load(load_tree_text(text, name, options, diagnostics), name, options, diagnostics);
 }
 
 }  // namespace footfall::behaviors

@@ -9,7 +9,7 @@ using namespace core;  // the words in which tables are written
 constexpr KeySpec kBehaviorRows[] = {
     key("behavior", integer(1, 1), "the version of the language; the first key of the file")
         .required(),
-    key("base", text_of("the path of a behavior file"),
+    key("base", text_of("the path of a behavior file, or the name of one in the library"),
         "a file this one inherits, relative to this one: maps merge by key, all else is replaced, "
         "`NAME: off` removes, `KEY+:` appends to a list"),
     key("name", text_of("a name"), "the behavior's name in logs and reports")

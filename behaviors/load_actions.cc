@@ -65,8 +65,11 @@ void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope
     }
     ParameterInfo& info = context.behavior.parameters[static_cast<std::size_t>(index)];
     if (info.live) {
-      context.error(entry.key_mark, "live-variable",
-                    fmt::format("'{}' is live: an action may not set it", entry.key));
+      context.error(
+          entry.key_mark, "live-variable",
+          fmt::format("'{}' is live: an action may not set it; write `live: false`, or leave "
+                      "`live` out",
+                      entry.key));
     }
     info.variable = true;
     const ParameterInfo copy = info;

@@ -137,6 +137,12 @@ struct LoadContext {
 // Arguments put into a tree: whole scalars, keys, parts of dotted names and of expressions.
 core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments);
 
+// A behavior's file, or its text, with its bases (load_tree.cc).
+core::YamlNode load_tree(const std::string& path, const LoadOptions& options,
+                         core::Diagnostics& diagnostics);
+core::YamlNode load_tree_text(std::string_view text, const std::string& name,
+                              const LoadOptions& options, core::Diagnostics& diagnostics);
+
 // All steps from a file's tree to `context.behavior`; false after errors.
 bool compile_behavior(LoadContext& context, core::YamlNode root, const std::string& path);
 

@@ -67,6 +67,13 @@ void read_range(LoadContext& context, const core::YamlNode& map, ParameterInfo& 
   info.max = (*range)[1];
 }
 
+// `0.08 s to 0.4 s`.
+std::string range_text(const ParameterInfo& info) {
+  const std::string unit = core::unit_text(info.dimension);
+  const std::string blank = unit.empty() ? "" : " ";
+  return fmt::format("{:g}{}{} to {:g}{}{}", info.min, blank, unit, info.max, blank, unit);
+}
+
 void check_against_range(LoadContext& context, const core::YamlNode& value,
                          const ParameterInfo& info, const std::vector<double>& values) {
   if (!info.has_range()) return;
@@ -74,7 +81,8 @@ void check_against_range(LoadContext& context, const core::YamlNode& value,
     if (values[k] >= info.min && values[k] <= info.max) continue;
     const core::YamlNode& place = value.is_sequence() ? value.items[k] : value;
     context.error(place.mark, "out-of-range",
-                  fmt::format("'{}' is outside the range of '{}'", place.scalar, info.name));
+                  fmt::format("'{}' is outside the range of '{}', {}", place.scalar, info.name,
+                              range_text(info)));
   }
 }
 

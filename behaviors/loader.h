@@ -19,9 +19,9 @@ struct NativeFunctionInfo {
 };
 
 struct LoadOptions {
-  std::vector<std::string> search;            // folders holding robots/NAME/robot.yaml
-  std::string robot;                          // overrides the file's `robot:` if not empty
-  std::vector<NativeFunctionInfo> functions;  // registered by the program
+  std::vector<std::string> search;  // folders of robots/NAME/robot.yaml, behaviors/library
+  std::string robot;                // overrides the file's `robot:` if not empty
+  std::vector<NativeFunctionInfo> functions;             // registered by the program
   std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, texts as in YAML
 };
 
@@ -32,5 +32,8 @@ std::unique_ptr<Behavior> load_behavior(const std::string& path, const LoadOptio
 std::unique_ptr<Behavior> load_behavior_text(std::string_view text, const std::string& name,
                                              const LoadOptions& options,
                                              core::Diagnostics& diagnostics);
+
+// Where `base: NAME` finds behaviors by name: behaviors/library in each folder of `search`.
+std::vector<std::string> library_folders(const std::vector<std::string>& search);
 
 }  // namespace footfall::behaviors

@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "behaviors/statechart.h"
 #include "core/value_reader.h"
 
 namespace footfall::behaviors {
 namespace {
+
+constexpr auto kEnginesOwn = std::to_array<std::string_view>(
+    {"contact.", "planner.", "fault.", "done.", "error.", "parameter.changed."});
 
 std::string json_text(const std::string& text) {
   std::string out = "\"";
@@ -115,6 +119,27 @@ std::vector<TraceStep> trace_events(std::string_view names) {
     names.remove_prefix(std::min(comma + 1, names.size()));
   }
   return steps;
+}
+
+std::vector<std::string> unknown_events(const Behavior& behavior,
+                                        const std::vector<TraceStep>& steps) {
+  std::vector<std::string> sentences;
+  if (!behavior.scripts.empty()) return sentences;  // theirs may be any
+  std::vector<std::string> seen = behavior.events;
+  for (const TraceStep& step : steps) {
+    if (step.after >= 0.0 || index_of(seen, step.event) >= 0) continue;
+    seen.push_back(step.event);
+    const bool built_in =
+        std::ranges::any_of(kEnginesOwn, [&](auto own) { return step.event.starts_with(own); });
+    const bool heard = std::ranges::any_of(behavior.patterns, [&](const EventPattern& pattern) {
+      return Chart::event_matches(pattern.text, step.event);
+    });
+    if (built_in || heard) continue;
+    sentences.push_back(
+        fmt::format("nothing listens to the event '{}', and `events` does not list it{}",
+                    step.event, core::did_you_mean(step.event, behavior.events)));
+  }
+  return sentences;
 }
 
 void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::ostream& out) {

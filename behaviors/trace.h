@@ -26,6 +26,11 @@ std::optional<std::vector<TraceStep>> load_trace_script_text(std::string_view te
 // `t1,t2` as steps.
 std::vector<TraceStep> trace_events(std::string_view names);
 
+// One sentence for each event of the steps that the behavior neither declares nor listens to, and
+// that is none of the engine's own (contact.*, fault.*, ...).
+std::vector<std::string> unknown_events(const Behavior& behavior,
+                                        const std::vector<TraceStep>& steps);
+
 // Writes one JSON line for the initial configuration and one after each event:
 // {"event":"t1","active":["b1","c1"]}. Time stands still at events and runs through delays, with
 // the robot's rate, or 1 kHz without a robot; signals stay 0.

@@ -51,6 +51,8 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"live-range", kError, "a parameter with `live: true` and no `range`"},
     {"live-variable", kError, "an action sets a live parameter"},
     {"log-text", kError, "a text to log whose braces do not fit, or with too many fields"},
+    {"lost-keys", kWarning,
+     "a plain value in place of a base's parameter with `range` or `live`, which are lost"},
     {"merge-key", kError, "YAML's `<<`"},
     {"mirror", kError, "a mirrored template without a first argument that has an image"},
     {"misplaced-key", kError, "a key that exists but has no meaning beside the others here"},

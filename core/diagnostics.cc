@@ -10,24 +10,11 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text_check.h"
+
 namespace footfall::core {
 
 namespace {
-
-// One problem is one line: a control character from a hostile file must not break it up.
-std::string on_one_line(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      out += fmt::format("\\x{:02x}", byte);
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
 
 // Edit distance that counts a swap of neighbours as one edit (optimal string alignment).
 int edit_distance(std::string_view a, std::string_view b) {

@@ -1,6 +1,7 @@
-// What a YAML text must be before it is parsed. Load time only.
+// What a YAML text must be before it is parsed, and how any text is printed. Not in a tick.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "core/diagnostics.h"
@@ -12,5 +13,8 @@ namespace footfall::core {
 // indentation
 // ("tab"). True if there is nothing of the kind.
 bool check_text(std::string_view text, int file, Diagnostics& diagnostics);
+
+// The text with control characters as `\xHH`: what comes from a file must not break up a line.
+std::string on_one_line(std::string_view text);
 
 }  // namespace footfall::core

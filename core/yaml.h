@@ -60,10 +60,14 @@ using YamlHistory = std::vector<YamlChange>;  // the innermost base's changes fi
 // keys last; everything else is replaced whole; `NAME: off` removes; `KEY+:` appends to a list.
 // Cycles and missing bases are errors. Load = load_yaml_file + resolve. What was
 // replaced on the way is added to `history`, if there is one.
+// A base is sought beside the file that names it, then as NAME or NAME.yaml in the folders
+// `library`.
 YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
-                             YamlHistory* history = nullptr);
+                             YamlHistory* history = nullptr,
+                             const std::vector<std::string>& library = {});
 // The same for text; `base:` is relative to the folder of `name`.
 YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
-                                  Diagnostics& diagnostics);
+                                  Diagnostics& diagnostics, YamlHistory* history = nullptr,
+                                  const std::vector<std::string>& library = {});
 
 }  // namespace footfall::core

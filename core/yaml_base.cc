@@ -86,68 +86,94 @@ std::string identity(const std::string& path) {
   return error ? path : canonical.string();
 }
 
-YamlNode load_chain(const std::string& path, std::vector<std::string>& chain, YamlHistory* history,
-                    Diagnostics& diagnostics);
+// A file and its bases, as they are loaded.
+struct Chain {
+  std::vector<std::string> files{};  // from the first to the one that is being read
+  YamlHistory* history = nullptr;
+  const std::vector<std::string>& library;
+  Diagnostics& diagnostics;
+};
+
+// The file that `base: NAME` means; empty and an error if there is none.
+std::string find_base(const std::string& path, const YamlNode& base, Chain& chain) {
+  const std::string& name = base.scalar;
+  const std::string beside = path_beside(path, name);
+  std::error_code error;
+  if (fs::is_regular_file(beside, error)) return beside;  // a pipe would be waited for
+  std::string problem = fmt::format("no file '{}'", beside);
+  if (name.find('/') == std::string::npos && !chain.library.empty()) {
+    std::vector<std::string> known;
+    for (const std::string& folder : chain.library) {
+      for (const char* ending : {"", ".yaml"}) {
+        const fs::path candidate = fs::path(folder) / (name + ending);
+        if (fs::is_regular_file(candidate, error)) return candidate.lexically_normal().string();
+      }
+      for (fs::directory_iterator file(folder, error), end; !error && file != end;
+           file.increment(error)) {
+        if (file->path().extension() == ".yaml") known.push_back(file->path().stem().string());
+      }
+    }
+    problem += fmt::format(", and no '{}.yaml' in {}{}", name, fmt::join(chain.library, ", "),
+                           did_you_mean(name, known));
+  }
+  chain.diagnostics.error(base.mark, "base", problem);
+  return {};
+}
+
+YamlNode load_chain(const std::string& path, Chain& chain);
 
 // Replaces a tree that names a base by the base with the tree over it.
-YamlNode resolve(YamlNode root, const std::string& path, std::vector<std::string>& chain,
-                 YamlHistory* history, Diagnostics& diagnostics) {
+YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
   const YamlNode* const base_node = root.find("base");
   if (base_node == nullptr) return root;
   const Mark place = base_node->mark;
   if (!base_node->is_scalar() || base_node->scalar.empty()) {
-    diagnostics.error(place, "base", "expected the path of a YAML file after 'base:'");
+    chain.diagnostics.error(place, "base", "expected the path of a YAML file after 'base:'");
     return {};
   }
-  const std::string base_path = path_beside(path, base_node->scalar);
-  const std::string base_identity = identity(base_path);
-  if (std::find(chain.begin(), chain.end(), base_identity) != chain.end()) {
-    diagnostics.error(place, "base-cycle",
-                      fmt::format("'{}' is its own base in the end", base_path));
+  const std::string base_path = find_base(path, *base_node, chain);
+  if (base_path.empty()) return {};
+  if (std::find(chain.files.begin(), chain.files.end(), identity(base_path)) != chain.files.end()) {
+    chain.diagnostics.error(place, "base-cycle",
+                            fmt::format("'{}' is its own base in the end", base_path));
     return {};
   }
-  std::error_code error;
-  if (!fs::is_regular_file(base_path, error)) {  // a pipe would be waited for
-    diagnostics.error(place, "base", fmt::format("no file '{}'", base_path));
-    return {};
-  }
-  YamlNode base = load_chain(base_path, chain, history, diagnostics);
+  YamlNode base = load_chain(base_path, chain);
   if (base.is_null()) return {};
   // The first key is the kind of file; one that begins with `base:` takes the kind from there.
   const std::string& first = root.entries.front().key;
   if (!base.is_map() || (first != "base" && first != base.entries.front().key)) {
-    diagnostics.error(place, "base",
-                      fmt::format("'{}' is a file of another kind than '{}'", base_path, first));
+    chain.diagnostics.error(
+        place, "base", fmt::format("'{}' is a file of another kind than '{}'", base_path, first));
     return {};
   }
   std::erase_if(root.entries, [](const YamlEntry& entry) { return entry.key == "base"; });
-  merge(base, std::move(root), Recorder{history}, diagnostics);
+  merge(base, std::move(root), Recorder{chain.history}, chain.diagnostics);
   return base;
 }
 
-YamlNode load_chain(const std::string& path, std::vector<std::string>& chain, YamlHistory* history,
-                    Diagnostics& diagnostics) {
-  const int errors_before = diagnostics.error_count();
-  chain.push_back(identity(path));
-  YamlNode root = resolve(load_yaml_file(path, diagnostics), path, chain, history, diagnostics);
-  chain.pop_back();
-  return diagnostics.error_count() == errors_before ? std::move(root) : YamlNode{};
+YamlNode load_chain(const std::string& path, Chain& chain) {
+  const int errors_before = chain.diagnostics.error_count();
+  chain.files.push_back(identity(path));
+  YamlNode root = resolve(load_yaml_file(path, chain.diagnostics), path, chain);
+  chain.files.pop_back();
+  return chain.diagnostics.error_count() == errors_before ? std::move(root) : YamlNode{};
 }
 
 }  // namespace
 
 YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
-                             YamlHistory* history) {
-  std::vector<std::string> chain;
-  return load_chain(path, chain, history, diagnostics);
+                             YamlHistory* history, const std::vector<std::string>& library) {
+  Chain chain{{}, history, library, diagnostics};
+  return load_chain(path, chain);
 }
 
 YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
-                                  Diagnostics& diagnostics) {
+                                  Diagnostics& diagnostics, YamlHistory* history,
+                                  const std::vector<std::string>& library) {
   const int errors_before = diagnostics.error_count();
-  std::vector<std::string> chain = {identity(name)};
-  YamlNode root =
-      resolve(load_yaml_text(text, name, diagnostics), name, chain, nullptr, diagnostics);
+  Chain chain{{identity(name)}, history, library, diagnostics};
+  YamlNode root = resolve(load_yaml_text(text, name, diagnostics), name, chain);
   return diagnostics.error_count() == errors_before ? std::move(root) : YamlNode{};
 }
 

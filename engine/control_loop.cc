@@ -182,14 +182,20 @@ void ControlLoop::handle(const SafetyFindings& findings) noexcept {
     const auto fault = static_cast<core::Fault>(i);
     const auto index = static_cast<std::size_t>(i);
     const bool mine = findings.found[index];
+    const FaultPlace& place = findings.place[index];
+    FaultPlace& worst = worst_place_[index];
+    if (place.joint >= 0 && (worst.joint < 0 || place.excess > worst.excess)) worst = place;
     if (mine && !active_[index]) {
       faults_.add(fault);
+      last_place_[index] = place;
       const core::Reaction reaction = behavior_.robot.reactions[index];
       machine_->raise_fault(fault, reaction);
       if (fault == core::Fault::fall || fault == core::Fault::simulator_warning) {
+        if (state_ != LoopState::fallen) ended_by_ = fault;
         state_ = LoopState::fallen;
       } else if (reaction == core::Reaction::safe_stop && state_ == LoopState::running) {
         state_ = LoopState::stopped;
+        ended_by_ = fault;
       }
     }
     seen_[index] |= mine;

@@ -70,6 +70,15 @@ class ControlLoop {
   const hal::Sensors& sensors() const noexcept { return sensors_; }
   const hal::Commands& commands() const noexcept { return commands_; }
   const core::FaultCounters& faults() const noexcept { return faults_; }
+  // Where a fault appeared last, and where it was worst; joint -1: it is no joint's, or none yet.
+  const FaultPlace& last_place(core::Fault fault) const noexcept {
+    return last_place_[static_cast<std::size_t>(fault)];
+  }
+  const FaultPlace& worst_place(core::Fault fault) const noexcept {
+    return worst_place_[static_cast<std::size_t>(fault)];
+  }
+  // The fault that made the state fallen or stopped; Fault::count: none did.
+  core::Fault ended_by() const noexcept { return ended_by_; }
   ScriptLink* scripts() noexcept { return scripts_.get(); }  // nullptr: the behavior has none
 
   // Ends the run: the machine's safe state, then the hardware's safe stop.
@@ -121,6 +130,8 @@ class ControlLoop {
   std::vector<unsigned char> task_in_force_, internal_in_force_;
   std::array<bool, core::kFaultCount> active_{};  // faults present in the previous tick
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
+  std::array<FaultPlace, core::kFaultCount> last_place_{}, worst_place_{};
+  core::Fault ended_by_ = core::Fault::count;
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;
 };

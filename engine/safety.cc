@@ -8,6 +8,26 @@ namespace footfall::engine {
 
 using core::Fault;
 
+FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,
+                        const model::ControlModel& model) noexcept {
+  FallCriteria fall;
+  const double base = model.state().p_WB[2];
+  double ground = base;
+  for (int c = 0; c < model.contact_count(); ++c) {
+    ground = std::min(ground, model.point(c).position[2]);
+  }
+  fall.height = base - ground;
+  fall.height_limit = robot.height_limit * robot.standing_height;
+  fall.low =
+      model.contact_count() > 0 && robot.standing_height > 0.0 && fall.height < fall.height_limit;
+  const double upright = model.R_WB()[8];  // cos of the tilt
+  fall.tilt = std::acos(std::clamp(upright, -1.0, 1.0));
+  fall.tilt_limit = robot.tilt_limit;
+  fall.tilted = upright < std::cos(robot.tilt_limit);
+  fall.touching = sensors.body_contact;
+  return fall;
+}
+
 SafetyFilter::SafetyFilter(const model::RobotDescription& robot) : robot_(robot) {}
 
 SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
@@ -21,7 +41,9 @@ SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
     finite &= std::isfinite(state.q[i]) && std::isfinite(state.qd[i]);
     const model::JointDescription& joint = robot_.joints[i];
     if (state.q[i] < joint.position_min || state.q[i] > joint.position_max) {
-      findings.add(Fault::joint_limit);
+      const double excess =
+          std::max(joint.position_min - state.q[i], state.q[i] - joint.position_max);
+      findings.add(Fault::joint_limit, {j, state.q[i], excess});
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -31,15 +53,7 @@ SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
   for (const double q : state.q_WB) finite &= std::isfinite(q);
   if (!finite) findings.add(Fault::non_finite);
 
-  double ground = state.p_WB[2];
-  for (int c = 0; c < model.contact_count(); ++c) {
-    ground = std::min(ground, model.point(c).position[2]);
-  }
-  const bool low = model.contact_count() > 0 && robot_.standing_height > 0.0 &&
-                   state.p_WB[2] - ground < robot_.height_limit * robot_.standing_height;
-  const double upright = model.R_WB()[8];  // cos of the tilt
-  if (low || upright < std::cos(robot_.tilt_limit) || sensors.body_contact)
-    findings.add(Fault::fall);
+  if (judge_fall(robot_, sensors, model).fallen()) findings.add(Fault::fall);
   return findings;
 }
 
@@ -54,16 +68,18 @@ SafetyFindings SafetyFilter::filter(hal::Commands& commands) noexcept {
     }
     const double limit = robot_.joints[j].torque_limit;
     if (limit > 0.0 && std::abs(tau) >= limit) {
+      findings.add(Fault::torque_limit, {static_cast<int>(j), tau, std::abs(tau) - limit});
       tau = std::clamp(tau, -limit, limit);
-      findings.add(Fault::torque_limit);
     }
-    if (have_previous_) torque_step_ = std::max(torque_step_, std::abs(tau - previous_[j]));
+    const double step = have_previous_ ? tau - previous_[j] : 0.0;
+    torque_step_ = std::max(torque_step_, std::abs(step));
+    const double excess = std::abs(step) - robot_.torque_step_limit;
+    if (robot_.torque_step_limit > 0.0 && excess > 0.0) {
+      findings.add(Fault::torque_step, {static_cast<int>(j), step, excess});
+    }
     previous_[j] = tau;
   }
   have_previous_ = true;
-  if (robot_.torque_step_limit > 0.0 && torque_step_ > robot_.torque_step_limit) {
-    findings.add(Fault::torque_step);
-  }
   return findings;
 }
 

@@ -11,16 +11,40 @@
 
 namespace footfall::engine {
 
+// Where and how much, for faults of a joint: torque.limit (torque asked for, N m), torque.step
+// (change since the last tick, N m), joint.limit (position, rad).
+struct FaultPlace {
+  int joint = -1;  // -1: no joint's
+  double value = 0.0;
+  double excess = 0.0;  // beyond the limit; the largest is kept
+};
+
 // What the filter found in one tick, as a set of faults.
 struct SafetyFindings {
   std::array<bool, core::kFaultCount> found{};
+  std::array<FaultPlace, core::kFaultCount> place{};
   bool any = false;
   void add(core::Fault fault) noexcept {
     found[static_cast<std::size_t>(fault)] = true;
     any = true;
   }
+  void add(core::Fault fault, const FaultPlace& where) noexcept {
+    add(fault);
+    FaultPlace& kept = place[static_cast<std::size_t>(fault)];
+    if (kept.joint < 0 || where.excess > kept.excess) kept = where;
+  }
   bool has(core::Fault fault) const noexcept { return found[static_cast<std::size_t>(fault)]; }
 };
+
+// The criteria of a fall that a tick can measure. Source: docs/architecture.md, how we count.
+struct FallCriteria {
+  double height = 0.0, height_limit = 0.0;  // m, of the base above the lowest contact point
+  double tilt = 0.0, tilt_limit = 0.0;      // rad, from upright
+  bool low = false, tilted = false, touching = false;  // touching: a body that is no foot
+  bool fallen() const noexcept { return low || tilted || touching; }
+};
+FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,
+                        const model::ControlModel& model) noexcept;
 
 class SafetyFilter {
  public:

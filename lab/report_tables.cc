@@ -66,8 +66,10 @@ std::string error_card(const Log& log, const json& summary, const std::string& k
 std::string outcome_card(const Log& log, const json& summary) {
   const std::string end = text_at(summary, "end");
   const bool fell = summary.is_object() && summary.value("fell", false);
-  if (fell || end == "fall") return card("outcome", "fell", "", "bad");
-  if (end == "fault") return card("outcome", "stopped by a fault", "", "bad");
+  const json cause = summary.is_object() ? summary.value("cause", json()) : json();
+  const std::string why = text_at(cause, "text");
+  if (fell || end == "fall") return card("outcome", "fell", why, "bad");
+  if (end == "fault") return card("outcome", "stopped by a fault", why, "bad");
   if (!log.complete) return card("outcome", "cut off", "the log has no proper end", "warn");
   if (end == "stopped") return card("outcome", "ended by the behavior or by hand", "", "warn");
   return card("outcome", "no fall", end.empty() ? "" : "end: " + end, "good");
@@ -79,6 +81,20 @@ void add_number(std::string& out, const json& summary, const char* pointer, cons
   if (value) out += card(name, measure(*value, unit), note);
 }
 
+// ` (worst left_knee 7.2 Nm)`, for the faults of a joint.
+std::string worst_place(const json& summary, const std::string& fault) {
+  const json::json_pointer place = json::json_pointer("/worst_fault") / fault;
+  if (!summary.contains(place) || !summary[place].is_object()) return {};
+  const json& worst = summary[place];
+  for (const char* unit : {"Nm", "rad"}) {
+    const auto value = worst.find(unit);
+    if (value == worst.end() || !value->is_number()) continue;
+    return fmt::format(" (worst {} {:.3g} {})", text_at(worst, "joint"), value->get<double>(),
+                       unit);
+  }
+  return {};
+}
+
 std::string faults_card(const Log& log, const json& summary) {
   std::string names;
   std::int64_t count = 0;
@@ -86,7 +102,7 @@ std::string faults_card(const Log& log, const json& summary) {
     for (const auto& [name, value] : summary["faults"].items()) {
       if (!value.is_number() || value.get<double>() == 0.0) continue;
       count += value.get<std::int64_t>();
-      names += (names.empty() ? "" : ", ") + name + " " + value.dump();
+      names += (names.empty() ? "" : ", ") + name + " " + value.dump() + worst_place(summary, name);
     }
   } else if (const auto* faults = log.values("faults"); faults != nullptr && !faults->empty()) {
     count = std::lround(faults->back());

@@ -19,7 +19,9 @@ double seconds_since(Clock::time_point start) {
 class Run {
  public:
   Run(engine::ControlLoop& loop, RunSpec& spec)
-      : loop_(loop), spec_(spec), metrics_(loop), log_(loop, spec.log, spec.log_every) {}
+      : loop_(loop), spec_(spec), metrics_(loop), log_(loop, spec.log, spec.log_every, spec.said) {
+    states_before_.reserve(loop.behavior().states.size());
+  }
 
   RunResult execute() {
     loop_.start();
@@ -47,6 +49,9 @@ class Run {
     move_goal();
     fire_events();
     loop_.sense();
+    // A fault's tick enters `safe`: what ended the run is told by the states before it.
+    const auto active = loop_.machine().active_atomic();
+    states_before_.assign(active.begin(), active.end());
     const Clock::time_point before = Clock::now();
     if (spec_.arm_allocations) spec_.arm_allocations(true);
     loop_.compute();
@@ -136,12 +141,16 @@ class Run {
     result_.wall_time = seconds_since(started_);
     result_.real_time_factor = result_.wall_time > 0.0 ? loop_.time() / result_.wall_time : 0.0;
     result_.figures = metrics_.figures(result_.end == RunEnd::fall);
+    if (result_.end == RunEnd::fall || result_.end == RunEnd::fault) {
+      result_.cause = explain_end(loop_, metrics_.counter(), states_before_);
+    }
+    result_.worst = worst_faults(loop_);
     for (std::size_t i = 0; i < result_.faults.count.size(); ++i) {
       result_.faults.count[i] += loop_.faults().count[i];
       result_.faults.count[i] += loop_.machine().faults().count[i];
     }
     if (spec_.allocations) result_.allocations = spec_.allocations();
-    log_.event("end", run_end_name(result_.end), "");
+    log_.event("end", run_end_name(result_.end), result_.cause ? result_.cause->text : "");
   }
 
   engine::ControlLoop& loop_;
@@ -151,29 +160,12 @@ class Run {
   RunResult result_;
   std::array<double, 2> goal_{}, start_goal_{};
   Clock::time_point started_;
+  std::vector<int> states_before_;  // active atomic states at the start of the tick
   double last_status_ = 0.0;
   double last_step_at_ = 0.0;
 };
 
 }  // namespace
-
-const char* run_end_name(RunEnd end) {
-  switch (end) {
-    case RunEnd::steps:
-      return "steps";
-    case RunEnd::time:
-      return "time";
-    case RunEnd::fall:
-      return "fall";
-    case RunEnd::fault:
-      return "fault";
-    case RunEnd::stopped:
-      return "stopped";
-    case RunEnd::finished:
-      return "finished";
-  }
-  return "time";
-}
 
 bool has_goal(const behaviors::Behavior& behavior) {
   return !behavior.planners.empty() && behavior.planners.front().goal_slot >= 0;

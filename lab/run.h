@@ -13,6 +13,7 @@
 #include "core/timing_histogram.h"
 #include "engine/control_loop.h"
 #include "engine/log_writer.h"
+#include "lab/run_end.h"
 #include "lab/run_metrics.h"
 
 namespace footfall::lab {
@@ -44,18 +45,19 @@ struct RunSpec {
   engine::LogWriter* log = nullptr;
   const std::atomic<bool>* stop = nullptr;       // set by Ctrl-C
   std::function<void(const RunStatus&)> status;  // about five times a second of wall time
+  // What a `log:` action or a script said, at its time, s; outside of the tick.
+  std::function<void(double time, const std::string& text)> said;
   // Counts heap allocations of this thread while armed; null: not counted.
   void (*arm_allocations)(bool) = nullptr;
   std::int64_t (*allocations)() = nullptr;
 };
 
-enum class RunEnd { steps, time, fall, fault, stopped, finished };
-const char* run_end_name(RunEnd end);
-
 struct RunResult {
   RunEnd end = RunEnd::time;
+  std::optional<EndCause> cause;  // of a fall or a stop by a fault
   RunFigures figures;
   core::FaultCounters faults;
+  std::vector<WorstFault> worst;  // of the joints' faults, in the order of core::Fault
   core::TimingHistogram tick_time;
   std::int64_t allocations = -1;  // within ticks; -1: not counted
   double real_time_factor = 0.0;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/index.h"
+#include "lab/run_end.h"
 #include "lab/version.h"
 
 namespace footfall::lab {
@@ -23,10 +24,11 @@ std::string names_of(const behaviors::Chart& chart, const behaviors::Range& targ
 
 }  // namespace
 
-RunLog::RunLog(engine::ControlLoop& loop, engine::LogWriter* log, int every)
+RunLog::RunLog(engine::ControlLoop& loop, engine::LogWriter* log, int every, Said said)
     : loop_(loop),
       log_(log),
       every_(std::max(1, every)),
+      said_(std::move(said)),
       last_targets_(loop.behavior().planners.size()) {}
 
 std::int64_t RunLog::time_ns() const {
@@ -43,7 +45,10 @@ void RunLog::event(std::string_view kind, std::string_view name, std::string_vie
 }
 
 void RunLog::after_tick(const StepEvent& step) {
-  if (!log_) return;
+  if (!log_) {
+    if (said_) write_texts();
+    return;
+  }
   const behaviors::Behavior& behavior = loop_.behavior();
   for (const int t : loop_.machine().transitions_taken()) {
     const behaviors::TransitionInfo& info = behavior.transitions[at(t)];
@@ -67,7 +72,9 @@ void RunLog::after_tick(const StepEvent& step) {
   for (int f = 0; f < core::kFaultCount; ++f) {
     const auto fault = static_cast<core::Fault>(f);
     if (loop_.faults().of(fault) == seen_faults_.of(fault)) continue;
-    event("fault", core::fault_name(fault), fmt::format("{}", loop_.faults().of(fault)));
+    const std::string place = place_text(loop_, fault, loop_.last_place(fault));
+    event("fault", core::fault_name(fault),
+          fmt::format("{}{}{}", loop_.faults().of(fault), place.empty() ? "" : ", ", place));
   }
   seen_faults_ = loop_.faults();
   if (loop_.ticks() % every_ == 0) log_->sample(time_ns(), loop_.signals().values());
@@ -82,10 +89,15 @@ void RunLog::write_texts() {
     for (std::size_t k = 0; k < log.expressions.size(); ++k) {
       text += fmt::format("{:g}", record.values[k]) + log.pieces[k + 1];
     }
-    event("log", text, "");
+    say(text, "");
   }
   if (loop_.scripts() == nullptr) return;
-  for (const std::string& text : loop_.scripts()->take_messages()) event("log", text, "script");
+  for (const std::string& text : loop_.scripts()->take_messages()) say(text, "script");
+}
+
+void RunLog::say(const std::string& text, std::string_view from) {
+  event("log", text, from);
+  if (said_) said_(loop_.time(), text);
 }
 
 engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const std::string& world,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +16,10 @@ namespace footfall::lab {
 
 class RunLog {
  public:
-  // log may be null: then only state_name() does anything.
-  RunLog(engine::ControlLoop& loop, engine::LogWriter* log, int every);
+  using Said = std::function<void(double time, const std::string& text)>;
+  // log may be null: then only state_name() does anything, and `said`, if there is one, is told
+  // what `log:` actions and scripts say.
+  RunLog(engine::ControlLoop& loop, engine::LogWriter* log, int every, Said said = nullptr);
   void after_tick(const StepEvent& step);
   void event(std::string_view kind, std::string_view name, std::string_view detail);
   std::string state_name() const;
@@ -24,9 +27,11 @@ class RunLog {
  private:
   std::int64_t time_ns() const;
   void write_texts();
+  void say(const std::string& text, std::string_view from);
   engine::ControlLoop& loop_;
   engine::LogWriter* log_;
   int every_;
+  Said said_;
   core::FaultCounters seen_faults_;
   std::vector<std::array<double, 3>> last_targets_;
 };

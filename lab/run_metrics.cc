@@ -39,6 +39,7 @@ StepEvent RunMetrics::observe(const std::array<double, 2>& goal) noexcept {
   const StepEvent event = counter_.observe(loop_.sensors().contact.data(), heights.data());
 
   const auto& com = model.com().position;
+  if (first_) sums_.start = {com[0], com[1]};
   if (!first_) sums_.path_length += std::hypot(com[0] - last_com_[0], com[1] - last_com_[1]);
   last_com_ = {com[0], com[1]};
   sums_.max_distance = std::max(sums_.max_distance, std::hypot(com[0] - goal[0], com[1] - goal[1]));
@@ -72,7 +73,13 @@ void RunMetrics::observe_errors() noexcept {
   if (have_height_ref_) sums_.height.add(loop_.model().com().position[2] - height_ref_);
   const core::SignalTable& signals = loop_.signals();
   const behaviors::SignalLayout& layout = loop_.behavior().layout;
-  sums_.max_torque_step = std::max(sums_.max_torque_step, signals[layout.torque_step]);
+  // The tick that ends the run takes the control away or hands it to the safe state; what counts
+  // against the behavior is how its own torque moved.
+  if (loop_.state() == engine::LoopState::running) {
+    sums_.max_torque_step = std::max(sums_.max_torque_step, signals[layout.torque_step]);
+  } else {
+    sums_.end_torque_step = signals[layout.torque_step];
+  }
   for (int j = 0; j < loop_.model().joint_count(); ++j) {
     sums_.peak_torque = std::max(sums_.peak_torque, std::abs(loop_.commands().tau[at(j)]));
   }
@@ -115,6 +122,7 @@ RunFigures RunMetrics::figures(bool fell) const {
   RunFigures f = sums_;
   f.steps = counter_.steps();
   f.time = loop_.time();
+  f.end = last_com_;
   f.fell = fell;
   f.worst_clearance = f.steps > 0 ? counter_.worst_clearance() : 0.0;
   if (f.placements > 0) f.placement_mean = placement_sum_ / static_cast<double>(f.placements);

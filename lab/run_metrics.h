@@ -31,11 +31,13 @@ struct RunFigures {
   ErrorFigure roll, pitch, yaw, height;
   double placement_mean = 0.0, placement_max = 0.0;
   std::int64_t placements = 0;
-  double max_torque_step = 0.0;
+  double max_torque_step = 0.0;  // while the run goes on
+  double end_torque_step = 0.0;  // in the tick that ended it: control was let go, or went to `safe`
   double peak_torque = 0.0;
   double goal_error = 0.0;                        // mean over the last 10 steps
   double path_length = 0.0;                       // of the CoM, horizontal
   double max_distance = 0.0;                      // CoM to goal, largest
+  std::array<double, 2> start{}, end{};           // of the CoM, m, world
   std::array<double, 2> mean_velocity_last_50{};  // m/s, world
   double worst_clearance = 0.0;                   // m, smallest rise of a swing foot
   double mean_step_time = 0.0;                    // s

@@ -35,6 +35,67 @@ Json internal_json(const RunFigures& figures) {
   return out;
 }
 
+Json worst_json(const RunResult& result) {
+  Json out = Json::object();
+  for (const WorstFault& worst : result.worst) {
+    out[std::string(core::fault_name(worst.fault))] = {{"joint", worst.joint},
+                                                       {worst.unit, worst.value}};
+  }
+  return out;
+}
+
+Json cause_json(const RunResult& result) {
+  if (!result.cause) return nullptr;
+  const EndCause& cause = *result.cause;
+  return {{"criterion", cause.criterion},
+          {"subject", cause.subject.empty() ? Json() : Json(cause.subject)},
+          {"value", cause.value ? Json(*cause.value) : Json()},
+          {"limit", cause.limit ? Json(*cause.limit) : Json()},
+          {"unit", cause.unit.empty() ? Json() : Json(cause.unit)},
+          {"time_s", cause.time},
+          {"states", cause.states},
+          {"text", cause.text}};
+}
+
+double moved(const RunFigures& f) {
+  return std::hypot(f.end[0] - f.start[0], f.end[1] - f.start[1]);
+}
+
+std::string motion_text(const RunFigures& f) {
+  return fmt::format(
+      "  moved        {:.3f} m: CoM from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}) m, path {:.3f} m\n",
+      moved(f), f.start[0], f.start[1], f.end[0], f.end[1], f.path_length);
+}
+
+std::string torque_text(const RunFigures& f) {
+  std::string text = "  torque       ";
+  if (f.roll.count > 0) {
+    text += fmt::format("peak {:.1f} Nm, largest step between ticks {:.2f} Nm", f.peak_torque,
+                        f.max_torque_step);
+  } else {
+    text += fmt::format("not counted before {:g} s", kSettledAfter);
+  }
+  if (f.end_torque_step > 0.0) {
+    text += fmt::format("; {:.2f} Nm as the run ended", f.end_torque_step);
+  }
+  return text + "\n";
+}
+
+std::string faults_text(const RunResult& result) {
+  std::string text;
+  for (int i = 0; i < core::kFaultCount; ++i) {
+    const auto fault = static_cast<core::Fault>(i);
+    if (result.faults.of(fault) == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", core::fault_name(fault),
+                        result.faults.of(fault));
+    for (const WorstFault& worst : result.worst) {
+      if (worst.fault != fault) continue;
+      text += fmt::format(" (worst {} {:.3g} {})", worst.joint, worst.value, worst.unit);
+    }
+  }
+  return fmt::format("  faults       {}\n", text.empty() ? "none" : text);
+}
+
 Json tick_json(const core::TimingHistogram& h) {
   return {{"p50", h.percentile(0.5) * 1e-3},
           {"p99", h.percentile(0.99) * 1e-3},
@@ -68,6 +129,13 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["path_length_m"] = f.path_length;
   out["internal_force"] = internal_json(f);
   out["faults"] = faults_json(result.faults);
+  out["start_m"] = f.start;
+  out["end_m"] = f.end;
+  out["moved_m"] = moved(f);
+  out["cause"] = cause_json(result);
+  out["worst_fault"] = worst_json(result);
+  const bool let_go = result.end == RunEnd::finished || result.cause.has_value();
+  out["end_torque_step_Nm"] = settled && let_go ? Json(f.end_torque_step) : Json();
   out["max_distance_m"] = f.max_distance;
   out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
   out["clearance_min_m"] = f.steps > 0 ? Json(f.worst_clearance) : Json();
@@ -101,8 +169,10 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   const auto deg = [](double rad) { return rad * 180.0 / M_PI; };
   std::string text = fmt::format("{} · {} · {} · {} · seed {}\n", id.behavior, id.robot, id.world,
                                  id.backend, id.seed);
-  text += fmt::format("  end          {} after {:.2f} s, {} steps{}\n", run_end_name(result.end),
-                      f.time, f.steps, f.fell ? "  (the robot FELL)" : "");
+  text += fmt::format("  end          {} after {:.2f} s, {} step{}\n", run_end_text(result.end),
+                      f.time, f.steps, f.steps == 1 ? "" : "s");
+  if (result.cause) text += fmt::format("  cause        {}\n", result.cause->text);
+  text += motion_text(f);
   if (f.height.count > 0) {
     text += fmt::format("  orientation  roll {:.2f}°  pitch {:.2f}°  yaw {:.2f}° (largest error)\n",
                         deg(f.roll.max), deg(f.pitch.max), deg(f.yaw.max));
@@ -118,20 +188,12 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
     text += fmt::format("  footsteps    {:.1f} mm mean, {:.1f} mm largest from the plan\n",
                         f.placement_mean * 1e3, f.placement_max * 1e3);
   }
-  text += fmt::format("  torque       peak {:.1f} Nm, largest step between ticks {:.2f} Nm\n",
-                      f.peak_torque, f.max_torque_step);
+  text += torque_text(f);
   for (const auto& [name, force] : f.internal) {
     text +=
         fmt::format("  {}  {:.1f} N rms from {:.1f} N\n", name, force.error.rms(), force.reference);
   }
-  std::string faults;
-  for (int i = 0; i < core::kFaultCount; ++i) {
-    const auto fault = static_cast<core::Fault>(i);
-    if (result.faults.of(fault) > 0) {
-      faults += fmt::format(" {} {}", core::fault_name(fault), result.faults.of(fault));
-    }
-  }
-  text += fmt::format("  faults      {}\n", faults.empty() ? " none" : faults);
+  text += faults_text(result);
   text += fmt::format("  tick         {:.1f} us median, {:.1f} us p99.9; {:.0f} x real time\n",
                       result.tick_time.percentile(0.5) * 1e-3,
                       result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);

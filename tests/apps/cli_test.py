@@ -1,5 +1,6 @@
 """The `footfall` command from outside: cli_test.py BINARY SOURCE_DIR [CLASS...]."""
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -187,6 +188,35 @@ class Run(Case):
         for name in ("roll", "pitch", "yaw", "height"):
             self.assertLessEqual(summary["error"][name]["rms"], summary["error"][name]["max"])
 
+    def test_every_key_of_the_summary_is_in_the_guide(self):
+        result = self.run_it("balance", "--for", "0.1s", "--json", "--quiet")
+        guide = pathlib.Path(SOURCE, "docs/behaviors.md").read_text()
+        for key in json.loads(result.stdout):
+            self.assertRegex(guide, rf"\n\| (`\w+`, )*`{key}`")
+
+    def test_it_says_where_it_went_and_why_it_fell(self):
+        result = self.run_it("balance", "--for", "5s", "--push", "800,0.2,40,0.3", "--json")
+        summary = json.loads(result.stdout.splitlines()[-1])
+        start, end = summary["start_m"], summary["end_m"]
+        self.assertAlmostEqual(summary["moved_m"], math.dist(start, end), places=9)
+        self.assertGreaterEqual(summary["path_length_m"], summary["moved_m"] - 1e-9)
+        cause = summary["cause"]
+        self.assertIn(cause["criterion"], ("height", "tilt", "body_contact"))
+        self.assertEqual(cause["time_s"], summary["time_s"])
+        for text in ("FELL", cause["text"], "moved"):
+            self.assertIn(text, result.stderr)
+
+    def test_what_the_behavior_says_is_printed(self):
+        path = self.write("b.yaml", STAND.replace("stand:\n", "stand:\n      on_entry: [{log: \"stands at {time} s\"}]\n"))
+        result = self.run_it(path, "--for", "0.1s")
+        self.assertRegex(result.stdout, r"0\.00\d s +stands at ")
+        self.assertNotIn("stands at", self.run_it(path, "--for", "0.1s", "--quiet").stdout)
+
+    def test_a_goal_that_is_not_live_cannot_be_moved(self):
+        goal = os.path.join(SOURCE, "examples/forward.yaml")
+        self.refused(self.run_it(goal, "--goal", "1,0"), 2, "goal", "not live", "--set")
+        self.refused(self.run_it("balance", "--goal", "1001,0"), 2, "1001", "-1000 to 1000")
+
     def test_quiet_json_is_one_line_and_no_log_writes_nothing(self):
         before = set(self.folder.iterdir())
         result = self.footfall("run", "balance", "--for", "0.2s", "--json", "--quiet", "--no-log")
@@ -269,6 +299,37 @@ class Trace(Case):
 
     def test_bad_input(self):
         self.refused(self.footfall("trace", "no.yaml", "--events", "go"), 2, "no.yaml")
+
+
+    def test_an_event_that_nobody_knows_is_a_warning(self):
+        path = self.write("c.yaml", CHART)
+        result = self.footfall("trace", path, "--events", "og,go")
+        self.assertEqual((result.returncode, len(result.stdout.splitlines())), (0, 3))
+        self.assertRegex(result.stderr, "warning: .*'og'.*did you mean 'go'")
+        self.assertEqual(self.footfall("trace", path, "--events", "go").stderr, "")
+
+
+class Events(Case):
+    def test_what_happened_by_kind_and_time(self):
+        self.run_it("balance", "--for", "2s", "--quiet")
+        everything = self.footfall("events", str(self.log))
+        self.assertEqual((everything.returncode, everything.stderr), (0, ""))
+        self.assertIn("-> step.right_foot.lift", everything.stdout)
+        result = self.footfall("events", str(self.log / "log.mcap"), "--kind", "step,mark", "--from", "1s", "--to",
+                               "1.8s", "--json")
+        events = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual({e["kind"] for e in events}, {"step", "mark"})
+        self.assertTrue(all(1.0 <= e["time_s"] <= 1.8 for e in events))
+
+    def test_bad_input(self):
+        self.run_it("balance", "--for", "0.1s", "--quiet")
+        for arguments, word in ((["--kind", "stpe"], "step"), (["--from", "soon"], "--from")):
+            result = self.footfall("events", str(self.log), *arguments)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(word, result.stderr)
+        result = self.footfall("events", "no.mcap")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("no.mcap", result.stderr)
 
 
 class Check(Case):
@@ -433,6 +494,7 @@ class Config(Case):
         self.assertIn("default", self.footfall("config", "balance", "--explain",
                                                "parameters.dual_time.live").stdout)
         self.refused(self.footfall("config", "balance", "--explain", "gains.singel.swing"), 2, "single")
+        self.refused(self.footfall("config", "balance", "--explain", "goal"), 2, "parameters.goal")
         self.refused(self.footfall("config", "balance", "--explain", "machine.step.left_fot"), 2, "left_foot")
 
 
@@ -454,6 +516,20 @@ class New(Case):
         self.assertEqual(result.returncode, 0, result.stderr)
         summary = json.loads(result.stdout.splitlines()[-1])
         self.assertEqual((summary["robot"], summary["fell"]), ("nimble", False))
+
+    def test_a_behavior_that_derives(self):
+        self.assertEqual(self.footfall("new", "behavior", "mine", "--base", "balance").returncode, 0)
+        text = (self.folder / "mine.yaml").read_text()
+        self.assertTrue(text.startswith("base: balance\n"))
+        self.assertIn("lift_time: {value: 145 ms}", text)
+        (self.folder / "sub").mkdir()
+        self.assertEqual(self.footfall("new", "behavior", "sub/yours", "--base", "mine.yaml").returncode, 0)
+        self.assertTrue((self.folder / "sub" / "yours.yaml").read_text().startswith("base: ../mine.yaml\n"))
+        result = self.footfall("check", "--strict", "mine.yaml", "sub/yours.yaml")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        result = self.footfall("new", "behavior", "x", "--base", "balanec")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("balanec", result.stderr)
 
     def test_a_chart_and_a_copy(self):
         self.assertEqual(self.footfall("new", "behavior", "c", "--from", "chart").returncode, 0)
@@ -523,12 +599,21 @@ class Help(Case):
         self.assertEqual(top.returncode, 0)
         commands = [line.split()[0] for line in top.stdout.split("Subcommands:")[1].splitlines()
                     if line.strip()]
-        self.assertLessEqual({"run", "check", "trace", "signals", "report", "graph", "fmt", "config", "new"}, set(commands))
+        self.assertLessEqual({"run", "check", "trace", "signals", "report", "graph", "fmt", "config", "new", "events"}, set(commands))
         for command in commands:
             with self.subTest(command):
                 result = self.footfall(command, "--help")
                 self.assertEqual(result.returncode, 0)
                 self.assertIn("Example: footfall " + command, result.stdout)
+
+    def test_signals_of_a_filter_parameters_and_gains(self):
+        result = self.footfall("signals", "balance", "gains.single.*.kp")
+        self.assertEqual(len(result.stdout.splitlines()), 3)
+        self.assertRegex(result.stdout, r"gains\.single\.height\.kp +1/s\^2 +gain 270, range 0 to 800, live")
+        result = self.footfall("signals", "balance", "lift_time")
+        self.assertRegex(result.stdout, r"\$lift_time +s +parameter 0\.145, range 0\.08 to 0\.4, live")
+        result = self.footfall("signals", "balance", "lift_tiem")
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
 
     def test_signals_have_names_and_units(self):
         result = self.footfall("signals", "balance")

@@ -162,7 +162,7 @@ TEST(Loader, ParametersAreCheckedAgainstTheirRange) {
       problems("behavior: 1\nparameters:\n  a: {value: 500 ms, range: [80 ms, 400 ms]}\n"
                "  b: {value: 1, live: true}\n  c: {value: [1 m, 1 s]}\n  on: {value: 1}\n"
                "machine: {}\n"),
-      "b.yaml:3:14: error: '500 ms' is outside the range of 'a'\n"
+      "b.yaml:3:14: error: '500 ms' is outside the range of 'a', 0.08 s to 0.4 s\n"
       "b.yaml:4:23: error: parameter 'b' is live and needs a range\n"
       "b.yaml:5:20: error: expected a length, got '1 s'\n"
       "b.yaml:6:3: error: expected the name of a parameter ('on' cannot be a name), got 'on'\n");
@@ -170,7 +170,8 @@ TEST(Loader, ParametersAreCheckedAgainstTheirRange) {
 TEST(Loader, AnActionMaySetVariablesOnly) {
   EXPECT_EQ(problems("behavior: 1\nparameters: {a: {value: 1, range: [0, 2], live: true}, b: 1}\n"
                      "machine: {on_entry: [{set: {a: 1}}, {set: {c: 1}}]}\n"),
-            "b.yaml:3:29: error: 'a' is live: an action may not set it\n"
+            "b.yaml:3:29: error: 'a' is live: an action may not set it; write `live: false`, or "
+            "leave `live` out\n"
             "b.yaml:3:44: error: unknown parameter 'c'\n");
 }
 TEST(Loader, OverridesReplaceParametersAndAreCheckedLikeThem) {
@@ -180,7 +181,8 @@ TEST(Loader, OverridesReplaceParametersAndAreCheckedLikeThem) {
       "behavior: 1\nparameters: {a: {value: 1 s, range: [0 s, 5 s]}}\nmachine: {}\n";
   EXPECT_EQ(load(text, options)->values[0], 2.0);
   options.set = {{"a", "9 s"}};
-  EXPECT_EQ(problems(text, options), "--set a:1:1: error: '9 s' is outside the range of 'a'\n");
+  EXPECT_EQ(problems(text, options),
+            "--set a:1:1: error: '9 s' is outside the range of 'a', 0 s to 5 s\n");
   options.set = {{"b", "9 s"}, {"gains.single.x.kp", "3"}};
   EXPECT_EQ(problems(text, options),
             "--set b:1:1: error: --set b: unknown parameter 'b'\n"

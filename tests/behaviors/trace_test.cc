@@ -27,6 +27,16 @@ TEST(Trace, OneJsonLineForTheStartAndOneAfterEachEvent) {
             "{\"event\":\"t1\",\"active\":[\"b1\",\"c1\"]}\n"
             "{\"event\":\"t2\",\"active\":[\"b1\",\"c1\"]}\n");
 }
+TEST(Trace, AnEventThatNobodyKnowsIsToldOnce) {
+  const auto behavior = load(
+      "behavior: 1\nevents: {press: \"a button\"}\nmachine:\n  states:\n"
+      "    a: {transitions: [{on: [press, knob.*, other], to: b}]}\n    b: {}\n");
+  const auto known = behaviors::trace_events("press,knob,knob.left,other,contact.x.touchdown");
+  EXPECT_TRUE(behaviors::unknown_events(*behavior, known).empty());
+  const auto unknown = behaviors::unknown_events(*behavior, behaviors::trace_events("pres,pres"));
+  ASSERT_EQ(unknown.size(), 1U);
+  EXPECT_NE(unknown[0].find("did you mean 'press'?"), std::string::npos) << unknown[0];
+}
 TEST(Trace, NamesOfEventsAreEscaped) {
   EXPECT_EQ(traced(chart("  states: {a: {}}"), {{-1.0, "x\"y"}}),
             "{\"event\":null,\"active\":[\"a\"]}\n{\"event\":\"x\\\"y\",\"active\":[\"a\"]}\n");

@@ -236,6 +236,23 @@ TEST_F(YamlFileTest, BasesStackUp) {
   EXPECT_EQ(root.find("x")->scalar + root.find("y")->scalar + root.find("z")->scalar, "123");
 }
 
+TEST_F(YamlFileTest, ABaseIsFoundByNameInALibraryAndBesideFirst) {
+  std::filesystem::create_directories(folder_ / "library");
+  write("library/walk.yaml", "behavior: 1\nx: library\n");
+  const std::vector<std::string> library = {path_of("empty"), path_of("library")};
+  const std::string path = write("mine.yaml", "base: walk\n");
+  EXPECT_EQ(load_yaml_with_base(path, diagnostics_, nullptr, library).find("x")->scalar, "library");
+  write("walk", "behavior: 1\nx: beside\n");
+  EXPECT_EQ(load_yaml_with_base(path, diagnostics_, nullptr, library).find("x")->scalar, "beside");
+  EXPECT_EQ(diagnostics_.to_string(), "");
+
+  const std::string wrong = write("wrong.yaml", "base: wlak\n");
+  load_yaml_with_base(wrong, diagnostics_, nullptr, library);
+  EXPECT_EQ(diagnostics_.to_string(), wrong + ":1:7: error: no file '" + path_of("wlak") +
+                                          "', and no 'wlak.yaml' in " + library[0] + ", " +
+                                          library[1] + " (did you mean 'walk'?)\n");
+}
+
 TEST_F(YamlFileTest, CyclesAndMissingBasesAreErrors) {
   write("a.yaml", "world: 1\nbase: b.yaml\n");
   const std::string b = write("b.yaml", "world: 1\nbase: a.yaml\n");

@@ -52,6 +52,12 @@ TEST_F(Safety, TheFirstTickHasNoStepAndLaterOnesAreOfWhatIsSent) {
   commands.tau[0] = 500.0;  // clamped to 50: a step of 5.1
   EXPECT_TRUE(filter.filter(commands).has(Fault::torque_step));
   EXPECT_NEAR(filter.torque_step(), 5.1, 1e-12);
+  commands.tau = {50.0, 6.0, -8.0};  // the largest of two steps, with its sign
+  const engine::FaultPlace place =
+      filter.filter(commands).place[static_cast<std::size_t>(Fault::torque_step)];
+  EXPECT_EQ(place.joint, 2);
+  EXPECT_EQ(place.value, -8.0);
+  filter.filter(commands);
   commands.tau[0] = 50.0;
   EXPECT_FALSE(filter.filter(commands).has(Fault::torque_step));
   EXPECT_EQ(filter.torque_step(), 0.0);

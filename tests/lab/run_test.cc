@@ -88,6 +88,21 @@ TEST(Run, EndsWithAFall) {
   EXPECT_TRUE(result.figures.fell);
   EXPECT_LT(result.figures.time, 3.0);
   EXPECT_EQ(result.faults.of(core::Fault::fall), 1);
+  // Why: the criterion that it names is beyond its limit, and the state is the one it fell in, not
+  // the safe one that it fell into.
+  ASSERT_TRUE(result.cause);
+  const lab::EndCause& cause = *result.cause;
+  if (cause.criterion == "tilt") {
+    EXPECT_GT(*cause.value, 0.8);
+  }
+  if (cause.criterion == "height") {
+    EXPECT_LT(*cause.value, 0.6 * rig.behavior->robot.standing_height);
+  }
+  EXPECT_TRUE(cause.criterion == "tilt" || cause.criterion == "height" ||
+              cause.criterion == "body_contact")
+      << cause.criterion;
+  EXPECT_TRUE(cause.states.starts_with("step.") || cause.states == "sway") << cause.states;
+  EXPECT_NE(cause.text.find(cause.states), std::string::npos);
 }
 
 TEST(Run, EndsWhereTheBehaviorEnds) {
@@ -126,6 +141,51 @@ TEST(Run, EndsWithAFaultWhoseReactionIsToStop) {
   const lab::RunResult result = lab::run(*rig.loop, spec);
   EXPECT_EQ(result.end, lab::RunEnd::fault);
   EXPECT_EQ(rig.loop->ticks(), 1);
+  ASSERT_TRUE(result.cause);
+  EXPECT_EQ(result.cause->criterion, "joint.limit");
+  EXPECT_EQ(result.cause->subject, rig.behavior->robot.joints[2].name);
+  EXPECT_NEAR(*result.cause->value, rig.behavior->robot.joints[2].posture, 1e-3);
+  ASSERT_EQ(result.worst.size(), 1U);
+  EXPECT_EQ(result.worst[0].joint, rig.behavior->robot.joints[2].name);
+}
+
+// A `final` state without control commands no torque: its step is what the joints still gave.
+TEST(Run, TheStepOfLettingGoIsNotTheBehaviorsOwn) {
+  const std::string path = temporary("let_go.yaml");
+  std::ofstream(path) << "behavior: 1\nrobot: hume\nmachine:\n  states:\n    stand:\n"
+                         "      contacts: [right_foot, left_foot]\n      tasks:\n"
+                         "        height: {type: com_position, axes: [z], priority: 1, reference: "
+                         "entry, gains: {kp: 270, kd: 10}}\n"
+                         "        attitude: {type: body_orientation, priority: 1, reference: 0, "
+                         "gains: {kp: 200, kd: 15}}\n"
+                         "        rest: {type: joint_damping, priority: 2, gains: {kd: 2}}\n"
+                         "      on_exit: [{log: \"lets go\"}]\n"
+                         "      after: 2.1 s\n      to: done\n    done: {type: final}\n";
+  Rig rig(path);
+  lab::RunSpec spec;
+  std::vector<std::string> said;
+  spec.said = [&](double time, const std::string& text) {
+    EXPECT_NEAR(time, 2.1, 2.0 / 1500.0);
+    said.push_back(text);
+  };
+  const Logged run = run_logged(rig, spec);
+  std::filesystem::remove(path);
+  ASSERT_EQ(run.result.end, lab::RunEnd::finished);
+  EXPECT_EQ(said, std::vector<std::string>{"lets go"});
+  const std::size_t last = run.log.rows() - 1;
+  double largest = 0.0;
+  for (const auto& joint : rig.behavior->robot.joints) {
+    const auto* command = run.log.values("joint." + joint.name + ".command");
+    ASSERT_TRUE(command);
+    EXPECT_EQ((*command)[last], 0.0F);
+    largest = std::max(largest, std::abs(static_cast<double>((*command)[last - 1])));
+  }
+  const lab::RunFigures& f = run.result.figures;
+  EXPECT_NEAR(f.end_torque_step, largest, 1e-5 * largest);  // logged as float
+  EXPECT_LT(f.max_torque_step, 0.1 * largest);              // it stood still
+  const auto* x = run.log.values("com.pos.x");
+  EXPECT_NEAR(f.start[0], static_cast<double>(x->front()), 1e-6);
+  EXPECT_NEAR(f.end[0], static_cast<double>(x->back()), 1e-6);
 }
 
 TEST(Run, APushAtAStepAndPhaseFiresOnceThere) {
