@@ -15,8 +15,8 @@ namespace footfall::behaviors {
 namespace {
 
 constexpr int kMaxLooks = 2'000'000;  // at transitions: beyond, the check is silent, not slow
-constexpr std::size_t kMaxSteps = 64;
-constexpr std::size_t kMaxQueue = 32;
+constexpr std::size_t kMaxPlayedSteps = 64;
+constexpr std::size_t kMaxPlayedQueue = 32;
 
 // Where the machine is between two micro steps.
 struct Place {
@@ -62,7 +62,7 @@ class EventLoopCheck {
     std::vector<Place> places;
     std::vector<MicroStep> steps;
     MicroStep step{first, -1};
-    while (steps.size() < kMaxSteps && take(step.transition, now)) {
+    while (steps.size() < kMaxPlayedSteps && take(step.transition, now)) {
       steps.push_back(step);
       const auto seen = std::find(places.begin(), places.end(), now);
       if (seen != places.end()) {
@@ -128,7 +128,7 @@ class EventLoopCheck {
       }
       now.leaf = s;
     }
-    return !in_region(now.leaf) && now.queue.size() <= kMaxQueue;
+    return !in_region(now.leaf) && now.queue.size() <= kMaxPlayedQueue;
   }
 
   bool in_region(int s) const {

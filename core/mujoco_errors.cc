@@ -13,7 +13,7 @@
 namespace footfall::core {
 namespace {
 
-constexpr int kMachineFailed = 3;  // exit code: the machine or the backend failed
+constexpr int kMujocoFailed = 3;  // exit code: the machine or the backend failed
 
 std::atomic<bool> g_running{false};
 std::atomic<void (*)()> g_on_error{nullptr};
@@ -24,7 +24,7 @@ void on_error(const char* message) {
   if (!g_running.load()) throw std::runtime_error(std::string("MuJoCo: ") + message);
   std::fprintf(stderr, "footfall: error: MuJoCo failed during the run: %s\n", message);
   if (auto* stop = g_on_error.load()) stop();
-  std::_Exit(kMachineFailed);
+  std::_Exit(kMujocoFailed);
 }
 
 void on_warning(const char* message) {

@@ -6,11 +6,11 @@
 namespace footfall::core {
 namespace {
 
-constexpr std::size_t kNone = std::string_view::npos;
+constexpr std::size_t kNowhere = std::string_view::npos;
 
 struct Unsupported {};
 
-bool is_flow(char c) { return std::string_view(",[]{}").find(c) != kNone; }
+bool is_flow(char c) { return std::string_view(",[]{}").find(c) != kNowhere; }
 
 class Scanner {
  public:
@@ -25,7 +25,7 @@ class Scanner {
  private:
   char peek() const { return at_ < in_.size() ? in_[at_] : '\n'; }
   bool ends_word(std::size_t at) const {
-    return at >= in_.size() || std::string_view(" \t\r\n").find(in_[at]) != kNone;
+    return at >= in_.size() || std::string_view(" \t\r\n").find(in_[at]) != kNowhere;
   }
   bool ends_line(std::size_t at) const {
     return at >= in_.size() || in_[at] == '\n' || in_[at] == '\r';
@@ -50,7 +50,7 @@ class Scanner {
 
   std::size_t line_end() const {
     std::size_t end = std::min(in_.find('\n', at_), in_.size());
-    while (end > at_ && std::string_view(" \t\r").find(in_[end - 1]) != kNone) --end;
+    while (end > at_ && std::string_view(" \t\r").find(in_[end - 1]) != kNowhere) --end;
     return end;
   }
 
@@ -145,7 +145,7 @@ class Scanner {
     if (end >= in_.size()) throw Unsupported{};
     add(YamlToken::Kind::quoted, at_, end + 1);
     const std::size_t last = in_.rfind('\n', end);
-    if (last != kNone && last >= line_begin_) line_begin_ = last + 1;
+    if (last != kNowhere && last >= line_begin_) line_begin_ = last + 1;
     read_colon(true);
   }
 
@@ -179,17 +179,17 @@ class Scanner {
     const std::string header = tokens_[block].text;
     const std::size_t digit = header.find_first_of("123456789");
     std::size_t indent =
-        digit == std::string::npos ? kNone : parent + static_cast<std::size_t>(header[digit] - '0');
+        digit == std::string::npos ? kNowhere : parent + static_cast<std::size_t>(header[digit] - '0');
     std::vector<std::string>& lines = tokens_[block].lines;
     while (at_ < in_.size()) {
       const std::size_t stop = std::min(in_.find('\n', at_), in_.size());
       std::string_view line = in_.substr(at_, stop - at_);
       if (line.ends_with('\r')) line.remove_suffix(1);
       const std::size_t column = line.find_first_not_of(' ');
-      if (column != kNone && column <= parent) break;
-      if (column != kNone && indent == kNone) indent = column;
-      const bool empty = column == kNone && (indent == kNone || line.size() <= indent);
-      if (!empty && line.substr(0, indent).find_first_not_of(' ') != kNone) throw Unsupported{};
+      if (column != kNowhere && column <= parent) break;
+      if (column != kNowhere && indent == kNowhere) indent = column;
+      const bool empty = column == kNowhere && (indent == kNowhere || line.size() <= indent);
+      if (!empty && line.substr(0, indent).find_first_not_of(' ') != kNowhere) throw Unsupported{};
       lines.emplace_back(empty ? std::string_view() : line.substr(indent));
       at_ = std::min(stop + 1, in_.size());
     }
