@@ -131,6 +131,10 @@ void set_goal(const RunOptions& options, const behaviors::Behavior& behavior, la
     spec.goal_velocity = sim::parse_vector2(options.goal_velocity, core::kVelocity, error);
     if (!spec.goal_velocity) throw InputError("--goal-velocity: error: " + error);
   }
+  for (const engine::EditBatch& edit : lab::goal_edits(behavior, spec)) {
+    const auto reasons = engine::reasons_against(behavior, edit, 0);
+    if (!reasons.empty()) throw InputError("--goal: error: " + reasons.front());
+  }
 }
 
 lab::RunSpec make_spec(const RunOptions& options) {

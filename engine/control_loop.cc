@@ -107,6 +107,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       signals_(behavior.signals),
       model_(behavior.robot, settings.deviation),
       machine_(std::make_unique<behaviors::Machine>(behavior, signals_)),
+      edits_(behavior),
       controller_(model_, torque_limits(behavior.robot), controller_sizes(behavior), period_),
       estimator_(behavior.robot.joint_count()),
       planners_(behavior, model_, latency_ticks(settings.planner_latency, period_)),
@@ -150,6 +151,7 @@ bool ControlLoop::sense() noexcept {
 }
 
 void ControlLoop::compute() noexcept {
+  edits_.apply(tick_, *machine_);
   estimator_.estimate(sensors_, estimate_);
   model_.update(estimate_);
   write_measured_signals();

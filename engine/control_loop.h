@@ -11,6 +11,7 @@
 #include "behaviors/machine.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
+#include "engine/edit_door.h"
 #include "engine/estimator.h"
 #include "engine/planner_link.h"
 #include "engine/safety.h"
@@ -70,6 +71,9 @@ class ControlLoop {
   const hal::Sensors& sensors() const noexcept { return sensors_; }
   const hal::Commands& commands() const noexcept { return commands_; }
   const core::FaultCounters& faults() const noexcept { return faults_; }
+  // Live edits: submitted here, applied at the start of a tick.
+  EditDoor& edits() noexcept { return edits_; }
+  const EditDoor& edits() const noexcept { return edits_; }
   ScriptLink* scripts() noexcept { return scripts_.get(); }  // nullptr: the behavior has none
 
   // Ends the run: the machine's safe state, then the hardware's safe stop.
@@ -104,6 +108,7 @@ class ControlLoop {
   core::SignalTable signals_;
   model::ControlModel model_;
   std::unique_ptr<behaviors::Machine> machine_;
+  EditDoor edits_;
   tasks::WholeBodyController controller_;
   TrueStateEstimator estimator_;
   PlannerLink planners_;

@@ -62,8 +62,13 @@ struct RunResult {
   double wall_time = 0.0;
 };
 
-// Runs from start to end. Throws what ControlLoop::start() throws; nothing after that.
+// Runs from start to end. Throws what ControlLoop::start() throws, and std::runtime_error if the
+// goal is out of its range; nothing after that.
 RunResult run(engine::ControlLoop& loop, RunSpec& spec);
+
+// The edits that spec.goal and spec.goal_velocity mean: the goal at once, then moving until the run
+// or the goal's range ends. Empty if the behavior has no goal.
+std::vector<engine::EditBatch> goal_edits(const behaviors::Behavior& behavior, const RunSpec& spec);
 
 // Whether the behavior has a parameter that the goal options can move.
 bool has_goal(const behaviors::Behavior& behavior);
