@@ -76,6 +76,9 @@ class ControlLoop {
   const EditDoor& edits() const noexcept { return edits_; }
   ScriptLink* scripts() noexcept { return scripts_.get(); }  // nullptr: the behavior has none
 
+  // While planners are dropped none of them answers: a fault to be tried on purpose.
+  void drop_planners(bool on) noexcept { planners_.drop(on); }
+
   // Ends the run: the machine's safe state, then the hardware's safe stop.
   void safe_stop() noexcept;
 
