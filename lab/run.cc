@@ -53,6 +53,10 @@ class Run {
   void one_tick() {
     take_answers();
     fire_events();
+    if (spec_.observer) {
+      spec_.observer->before_tick(
+          {metrics_.counter().steps(), last_step_at_, metrics_.last_step_duration()}, log_);
+    }
     loop_.sense();
     const Clock::time_point before = Clock::now();
     if (spec_.arm_allocations) spec_.arm_allocations(true);
@@ -63,6 +67,7 @@ class Run {
     const StepEvent step = metrics_.observe(current_goal());
     if (step.foot >= 0) last_step_at_ = loop_.time();
     log_.after_tick(step);
+    if (spec_.observer) spec_.observer->after_tick();
     loop_.actuate();
     if (spec_.status && loop_.ticks() % 256 == 0) show_status();
   }
