@@ -145,9 +145,9 @@ LoopState ControlLoop::tick() noexcept {
 
 bool ControlLoop::sense() noexcept {
   if (scripts_ && lockstep_) scripts_->wait();
-  const bool fresh = hardware_.read(sensors_);
-  if (!fresh) faults_.add(core::Fault::sensor_stale);
-  return fresh;
+  fresh_ = hardware_.read(sensors_);
+  if (!fresh_) faults_.add(core::Fault::sensor_stale);
+  return fresh_;
 }
 
 void ControlLoop::compute() noexcept {
@@ -156,6 +156,8 @@ void ControlLoop::compute() noexcept {
   model_.update(estimate_);
   write_measured_signals();
   handle(safety_.check_state(sensors_, model_));
+  if (!fresh_ && was_fresh_) react(core::Fault::sensor_stale);  // counted where it was read
+  was_fresh_ = fresh_;
   planners_.deliver(tick_, *machine_);
   if (scripts_) scripts_->deliver(*machine_);
   machine_->tick(tick_, measure_);
@@ -186,15 +188,19 @@ void ControlLoop::handle(const SafetyFindings& findings) noexcept {
     const bool mine = findings.found[index];
     if (mine && !active_[index]) {
       faults_.add(fault);
-      const core::Reaction reaction = behavior_.robot.reactions[index];
-      machine_->raise_fault(fault, reaction);
-      if (fault == core::Fault::fall || fault == core::Fault::simulator_warning) {
-        state_ = LoopState::fallen;
-      } else if (reaction == core::Reaction::safe_stop && state_ == LoopState::running) {
-        state_ = LoopState::stopped;
-      }
+      react(fault);
     }
     seen_[index] |= mine;
+  }
+}
+
+void ControlLoop::react(core::Fault fault) noexcept {
+  const core::Reaction reaction = behavior_.robot.reactions[static_cast<std::size_t>(fault)];
+  machine_->raise_fault(fault, reaction);
+  if (fault == core::Fault::fall || fault == core::Fault::simulator_warning) {
+    state_ = LoopState::fallen;
+  } else if (reaction == core::Reaction::safe_stop && state_ == LoopState::running) {
+    state_ = LoopState::stopped;
   }
 }
 

@@ -98,6 +98,7 @@ class ControlLoop {
   };
 
   void handle(const SafetyFindings& findings) noexcept;
+  void react(core::Fault fault) noexcept;
   void observe_support() noexcept;
   void write_measured_signals() noexcept;
   void write_control_signals() noexcept;
@@ -129,6 +130,7 @@ class ControlLoop {
   std::vector<unsigned char> task_in_force_, internal_in_force_;
   std::array<bool, core::kFaultCount> active_{};  // faults present in the previous tick
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
+  bool fresh_ = true, was_fresh_ = true;          // new sensor data in this tick, in the previous
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;
 };

@@ -9,6 +9,7 @@
 
 #include "behaviors/loader.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/no_measure.h"
 
 namespace footfall::tests {
 namespace {
@@ -18,12 +19,7 @@ using engine::EditBatch;
 using engine::EditOutcome;
 using engine::EditSource;
 
-class NoMeasure final : public behaviors::Measure {
- public:
-  double position(tasks::TaskType, int, int) const noexcept override { return 0.0; }
-};
-
-constexpr const char* kChart = R"(
+constexpr const char* kEdited = R"(
 behavior: 1
 parameters:
   speed: {value: 1 m/s, range: [0 m/s, 10 m/s], live: true}
@@ -48,7 +44,7 @@ class Doored : public testing::Test {
  protected:
   Doored() {
     core::Diagnostics diagnostics;
-    behavior = behaviors::load_behavior_text(kChart, "chart.yaml", {}, diagnostics);
+    behavior = behaviors::load_behavior_text(kEdited, "chart.yaml", {}, diagnostics);
     if (!behavior) throw std::runtime_error(diagnostics.to_string());
     signals = behavior->signals;
     machine = std::make_unique<behaviors::Machine>(*behavior, signals);
