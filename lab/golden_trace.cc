@@ -16,7 +16,7 @@
 namespace footfall::lab {
 namespace {
 
-std::vector<std::string> fields_of(const std::string& line) {
+std::vector<std::string> csv_fields(const std::string& line) {
   std::vector<std::string> fields(1);
   for (const char c : line) {
     if (c == ',') {
@@ -29,7 +29,7 @@ std::vector<std::string> fields_of(const std::string& line) {
 }
 
 // An empty field is a signal without a value.
-double number(const std::string& text, const std::string& where) {
+double number_in(const std::string& text, const std::string& where) {
   if (text.empty()) return std::numeric_limits<double>::quiet_NaN();
   double value = 0.0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -56,7 +56,7 @@ GoldenTrace read_golden(const std::string& path) {
   std::string line;
   for (int number_of_line = 1; std::getline(file, line); ++number_of_line) {
     const std::string where = fmt::format("{}:{}", path, number_of_line);
-    std::vector<std::string> fields = fields_of(line);
+    std::vector<std::string> fields = csv_fields(line);
     if (number_of_line == 1) {
       if (fields.size() < 3 || fields[0] != "time" || fields[1] != "state") {
         throw std::runtime_error(where + ": error: expected the head 'time,state,SIGNAL,...'");
@@ -69,8 +69,9 @@ GoldenTrace read_golden(const std::string& path) {
       throw std::runtime_error(fmt::format("{}: error: expected {} fields, got {}", where,
                                            trace.signals.size() + 2, fields.size()));
     }
-    GoldenRow row{number(fields[0], where), fields[1], {}};
-    for (std::size_t k = 2; k < fields.size(); ++k) row.values.push_back(number(fields[k], where));
+    GoldenRow row{number_in(fields[0], where), fields[1], {}};
+    for (std::size_t k = 2; k < fields.size(); ++k)
+      row.values.push_back(number_in(fields[k], where));
     trace.rows.push_back(std::move(row));
   }
   if (trace.signals.empty()) throw std::runtime_error(path + ": error: the trace is empty");

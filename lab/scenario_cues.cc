@@ -8,13 +8,12 @@
 #include <limits>
 
 #include "behaviors/chart.h"
+#include "core/index.h"
 #include "lab/scenario_keys.h"
 #include "lab/scenario_result.h"
 
 namespace footfall::lab {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::string fault_word(InjectedFault fault) {
   return std::string(kInjectedFaults[static_cast<std::size_t>(fault)].word);

@@ -6,14 +6,13 @@
 #include <limits>
 
 #include "behaviors/expression.h"
+#include "core/index.h"
 
 namespace footfall::lab {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRoundOff = 1e-6;  // of a time in ticks
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // The signals that an expression reads, each once.
 std::vector<int> operands_of(const behaviors::ExpressionPool& pool, int expression) {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/index.h"
+
 namespace footfall::lab {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 

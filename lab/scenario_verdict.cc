@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/units.h"
 #include "lab/scenario_judge.h"
 
 namespace footfall::lab {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr RunEnd kEnds[] = {RunEnd::time, RunEnd::finished, RunEnd::fall, RunEnd::fault};
 

@@ -18,7 +18,7 @@ namespace footfall::lab {
 namespace {
 
 // 1500 Hz: a is active from tick 0, b from 150 (100 ms), c from 300, then a again.
-constexpr const char* kBehavior = R"(behavior: 1
+constexpr const char* kLaps = R"(behavior: 1
 robot: hume
 parameters:
   lap: {value: 100 ms, range: [50 ms, 400 ms], live: true}
@@ -46,7 +46,7 @@ class ScenarioRunTest : public testing::Test {
       : folder_(std::filesystem::path(testing::TempDir()) /
                 ("footfall_scenario_" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "laps.yaml") << kBehavior;
+    std::ofstream(folder_ / "laps.yaml") << kLaps;
   }
   ~ScenarioRunTest() override { std::filesystem::remove_all(folder_); }
 
