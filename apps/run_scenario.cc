@@ -27,7 +27,7 @@ void refuse_options(const RunOptions& options) {
   }
 }
 
-lab::ScenarioDescription load(const RunOptions& options) {
+lab::ScenarioDescription load_checked(const RunOptions& options) {
   core::Diagnostics diagnostics;
   lab::ScenarioDescription scenario =
       lab::load_scenario(options.behavior, {search_path()}, diagnostics);
@@ -81,11 +81,12 @@ void write_results(const RunOptions& options, const lab::ScenarioDescription& sc
 
 int run_scenario_file(RunOptions options) {
   refuse_options(options);
-  const lab::ScenarioDescription scenario = load(options);
+  const lab::ScenarioDescription scenario = load_checked(options);
   const bool seed_given = std::ranges::find(options.given, "--seed") != options.given.end();
   if (!seed_given) options.seed = scenario.seeds.front();
   const behaviors::Behavior& behavior = *scenario.behavior;
-  const sim::WorldDescription world = load_world(scenario.world, scenario.path);
+  const sim::WorldDescription world =
+      load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
   Backend backend = make_backend(options, behavior, world);
   hal::SensorFaults sensors(*backend.hardware);
   const lab::ScenarioHooks hooks = make_hooks(backend, sensors);

@@ -33,7 +33,8 @@ const std::atomic<bool>* stop_on_signals() {
   return &g_stop;
 }
 
-sim::WorldDescription load_world(const std::string& name, const std::string& beside) {
+sim::WorldDescription load_world(const std::string& name, const std::string& beside,
+                                 const std::string& place) {
   core::Diagnostics diagnostics;
   std::string file;
   if (!beside.empty()) {
@@ -42,9 +43,12 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
   if (file.empty()) file = sim::find_world_file(name, search_path());
   sim::WorldDescription world;
   if (file.empty()) {
-    if (name != "flat")
-      throw InputError(name + ": error: no such world file, and no sim/worlds/" + name +
-                       ".yaml in the search path");
+    if (name != "flat") {
+      throw InputError(
+          fmt::format("{}: error: unknown world '{}': no such file, and no "
+                      "sim/worlds/{}.yaml in the search path",
+                      place.empty() ? "--world" : place, name, name));
+    }
     return world;
   }
   world = sim::load_world(file, diagnostics);

@@ -28,9 +28,10 @@ struct Backend {
   std::string physics;
 };
 
-// A world by name or path; `beside`: a file in whose folder it is sought first. Prints what is
-// wrong with it; throws InputError.
-sim::WorldDescription load_world(const std::string& name, const std::string& beside = {});
+// A world by name or path; `beside`: a file in whose folder it is sought first; `place`: where it
+// is named. Prints what is wrong with it; throws InputError.
+sim::WorldDescription load_world(const std::string& name, const std::string& beside = {},
+                                 const std::string& place = {});
 Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
                      const sim::WorldDescription& world);
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world);
