@@ -1,91 +1,20 @@
 // `footfall run`: a behavior on a backend, with a status line, a summary, a log.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
 
 #include "apps/commands.h"
 #include "apps/report_command.h"
 #include "apps/run_options.h"
-#include "core/allocation_count.h"
-#include "core/text_check.h"
-#include "engine/log_writer.h"
-#include "hal/stub_backend.h"
+#include "apps/run_setup.h"
 #include "lab/run.h"
-#include "lab/run_log.h"
+#include "lab/scenario_loader.h"
 #include "lab/summary.h"
 #include "sim/disturbance.h"
-#include "sim/mujoco_backend.h"
 
 namespace footfall::apps {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::atomic<bool> g_stop{false};
-
-void on_interrupt(int) { g_stop.store(true); }
-
-// A mistake in the input: printed as it is, exit code 2.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-sim::WorldDescription load_world(const std::string& name) {
-  core::Diagnostics diagnostics;
-  const std::string file = sim::find_world_file(name, search_path());
-  sim::WorldDescription world;
-  if (file.empty()) {
-    if (name != "flat")
-      throw InputError(name + ": error: no such world file, and no sim/worlds/" + name +
-                       ".yaml in the search path");
-    return world;
-  }
-  world = sim::load_world(file, diagnostics);
-  if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
-  std::fputs(diagnostics.to_string().c_str(), stderr);
-  if (diagnostics.has_errors()) throw InputError("");
-  return world;
-}
-
-// The backend with what only it can do.
-struct Backend {
-  std::unique_ptr<hal::Hardware> hardware;
-  sim::MujocoBackend* mujoco = nullptr;
-  std::string physics;
-};
-
-Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
-                     const sim::WorldDescription& world) {
-  Backend backend;
-  if (options.backend == "stub") {
-    hal::StubSettings settings;
-    settings.joints = behavior.robot.joint_count();
-    settings.contacts = static_cast<int>(behavior.robot.contacts.size());
-    settings.period = behavior.robot.period_s();
-    settings.base = {0.0, 0.0, behavior.robot.standing_height};
-    for (const auto& joint : behavior.robot.joints) settings.start.push_back(joint.posture);
-    backend.hardware = std::make_unique<hal::StubBackend>(settings);
-    return backend;
-  }
-  auto mujoco = std::make_unique<sim::MujocoBackend>(behavior.robot, world, options.seed);
-  const sim::PhysicsFacts f = mujoco->facts();
-  backend.physics = fmt::format(
-      "step 1/{:.0f} s, friction {:g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature {:g}, "
-      "constraints {}, mocap bodies {}, mass {:.2f} kg",
-      1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max,
-      f.armature_max, f.equalities, f.mocap_bodies, f.mass);
-  backend.mujoco = mujoco.get();
-  backend.hardware = std::move(mujoco);
-  return backend;
-}
 
 void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& spec) {
   if (options.pushes.size() > sim::kMaxPushes) {
@@ -161,74 +90,10 @@ void set_goal(const RunOptions& options, const behaviors::Behavior& behavior, la
     spec.goal_velocity = sim::parse_vector2(options.goal_velocity, core::kVelocity, error);
     if (!spec.goal_velocity) throw InputError("--goal-velocity: error: " + error);
   }
-}
-
-// Prints what the behavior says, as it says it; a chatty one must not drown the summary.
-std::function<void(double, const std::string&)> said_printer(const RunOptions& options) {
-  constexpr int kMost = 50;
-  const bool status = isatty(STDERR_FILENO) != 0;
-  std::FILE* stream = options.json ? stderr : stdout;
-  const bool logged = !options.no_log;
-  return [stream, status, logged, said = 0](double time, const std::string& text) mutable {
-    if (++said > kMost + 1) return;
-    if (status) std::fputs("\r\033[K", stderr);
-    if (said <= kMost) {
-      fmt::print(stream, "  {:8.3f} s   {}\n", time, core::on_one_line(text));
-    } else {
-      fmt::print(stream, "  ... and more{}\n",
-                 logged ? "; all of it: footfall events LOG --kind log" : "");
-    }
-    std::fflush(stream);
-  };
-}
-
-lab::RunSpec make_spec(const RunOptions& options) {
-  lab::RunSpec spec;
-  spec.max_steps = options.steps;
-  spec.max_time = options.duration;
-  spec.realtime = options.realtime;
-  spec.log_every = options.log_all ? 1 : options.log_every;
-  spec.stop = &g_stop;
-  if (core::allocations_are_counted()) {
-    spec.arm_allocations = core::arm_allocation_count;
-    spec.allocations = core::allocation_count;
+  for (const engine::EditBatch& edit : lab::goal_edits(behavior, spec)) {
+    const auto reasons = engine::reasons_against(behavior, edit, 0);
+    if (!reasons.empty()) throw InputError("--goal: error: " + reasons.front());
   }
-  if (!options.quiet) spec.said = said_printer(options);
-  if (isatty(STDERR_FILENO) && !options.quiet) {
-    spec.status = [](const lab::RunStatus& s) {
-      std::fprintf(stderr, "\r  t %7.2f s   step %5lld   %5.1f x real time   %-40.40s", s.time,
-                   static_cast<long long>(s.steps), s.real_time_factor, s.state.c_str());
-      std::fflush(stderr);
-    };
-  }
-  return spec;
-}
-
-// Writes a small text file whole or not at all.
-void write_file(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw std::runtime_error("cannot write '" + temporary + "'");
-  }
-  fs::rename(temporary, path);
-}
-
-std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
-                                            const behaviors::Behavior& behavior,
-                                            const sim::WorldDescription& world,
-                                            lab::RunIdentity& id) {
-  if (options.no_log) return nullptr;
-  std::error_code error;
-  fs::create_directories(options.log, error);
-  if (error)
-    throw std::runtime_error("cannot create the log's folder '" + options.log +
-                             "': " + error.message());
-  id.log = options.log + "/log.mcap";
-  return std::make_unique<engine::LogWriter>(
-      id.log, behavior.signals,
-      lab::make_log_header(behavior, world.name, options.backend, options.seed));
 }
 
 int run_behavior(const RunOptions& options) {
@@ -245,19 +110,9 @@ int run_behavior(const RunOptions& options) {
   }
   const sim::WorldDescription world = load_world(options.world);
   Backend backend = make_backend(options, *behavior, world);
-  engine::LoopSettings settings;
-  settings.deviation = {world.control_model.mass_scale, world.control_model.com_shift};
-  settings.planner_latency = world.planner_latency;
-  settings.surface = world.surface;
-  settings.lockstep = !options.realtime;
-  settings.seed = options.seed;
-  const auto allows = [&](const char* what) {
-    return std::find(options.allow.begin(), options.allow.end(), what) != options.allow.end();
-  };
-  settings.script_access = {allows("files"), allows("processes")};
-  engine::ControlLoop loop(*behavior, *backend.hardware, settings);
+  engine::ControlLoop loop(*behavior, *backend.hardware, loop_settings(options, world));
 
-  lab::RunSpec spec = make_spec(options);
+  lab::RunSpec spec = make_spec(options, stop_on_signals());
   schedule_pushes(options, backend, spec);
   set_goal(options, *behavior, spec);
   lab::RunIdentity id = {behavior->name,           behavior->robot.name, world.name,
@@ -266,8 +121,6 @@ int run_behavior(const RunOptions& options) {
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
 
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
   const lab::RunResult result = lab::run(loop, spec);
   if (spec.status) std::fputs("\r\033[K", stderr);
   if (log) {
@@ -298,10 +151,14 @@ void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("run", "Runs a behavior on a backend, headless and as fast as it goes");
   add_run_options(*command, *options);
-  command->callback([options, &exit_code] {
+  command->callback([options, command, &exit_code] {
     try {
+      for (const CLI::Option* option : command->get_options()) {
+        if (option->count() > 0) options->given.push_back(option->get_name());
+      }
       finish_options(*options);
-      exit_code = run_behavior(*options);
+      exit_code = lab::is_scenario_file(options->behavior) ? run_scenario_file(*options)
+                                                           : run_behavior(*options);
     } catch (const InputError& error) {
       if (*error.what()) std::fprintf(stderr, "%s\n", error.what());
       exit_code = kBadInput;

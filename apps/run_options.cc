@@ -29,7 +29,8 @@ CLI::Validator at_least(std::int64_t least, const char* what) {
 void add_run_options(CLI::App& command, RunOptions& o) {
   const CLI::Validator positive = at_least(1, "a whole number above 0");
   command
-      .add_option("BEHAVIOR", o.behavior, "Behavior file, or the name of one in behaviors/library")
+      .add_option("BEHAVIOR", o.behavior,
+                  "Behavior file, or the name of one in behaviors/library; or a scenario file")
       ->required();
   command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's own");
   command.add_option("--backend", o.backend, "mujoco (physics) or stub (double integrators)")

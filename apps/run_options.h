@@ -32,6 +32,7 @@ struct RunOptions {
   bool json = false;
   bool quiet = false;
   bool realtime = false;
+  std::vector<std::string> given;  // options that were written, `--seed`
   std::vector<std::string> allow;  // what scripts may reach: files, processes
 };
 

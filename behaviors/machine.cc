@@ -155,6 +155,17 @@ std::span<const LogRecord> Machine::logs() const noexcept { return impl_->statec
 std::span<const ScriptRequest> Machine::script_requests() const noexcept {
   return impl_->statechart.script_requests();
 }
+std::span<const int> Machine::events_taken() const noexcept {
+  return impl_->statechart.events_taken();
+}
+std::uint32_t Machine::entries(int state) const noexcept {
+  return impl_->statechart.entry_serial(state);
+}
+std::uint8_t Machine::guard_outcomes(int transition) const noexcept {
+  return impl_->statechart.guard_outcomes(transition);
+}
+const EvaluationContext& Machine::context() const noexcept { return impl_->statechart.context(); }
+std::size_t Machine::outside_room() const noexcept { return impl_->outside.room(); }
 bool Machine::is_active(int state) const noexcept { return impl_->statechart.is_active(state); }
 const core::FaultCounters& Machine::faults() const noexcept { return impl_->statechart.faults(); }
 

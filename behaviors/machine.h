@@ -73,6 +73,7 @@ class Machine {
 
   // Outside events, by id (Behavior::find_event); false: the queue is full (counted, raised).
   bool raise(int event) noexcept;
+  std::size_t outside_room() const noexcept;  // how many more may be raised before the next tick
   // Fault events `fault.NAME`; with reaction safe_state the `safe` state is entered at this tick.
   void raise_fault(core::Fault fault, core::Reaction reaction) noexcept;
   void enter_safe() noexcept;  // rule 10
@@ -91,11 +92,19 @@ class Machine {
   std::span<const int> active_states() const noexcept;
   std::span<const int> marks() const noexcept;
   std::span<const int> transitions_taken() const noexcept;
+  // Events that came to their turn in this tick, in order.
+  std::span<const int> events_taken() const noexcept;
   // Texts logged in this tick; their pieces and fields are in Behavior::logs.
   std::span<const LogRecord> logs() const noexcept;
   // What this tick asks of the scripts, in order (indices into Behavior::calls and events).
   std::span<const ScriptRequest> script_requests() const noexcept;
   bool is_active(int state) const noexcept;
+  // How often a state was entered so far, and what a transition's guard has given: bit 0 false,
+  // bit 1 true.
+  std::uint32_t entries(int state) const noexcept;
+  std::uint8_t guard_outcomes(int transition) const noexcept;
+  // What expressions over states, parameters and time read now.
+  const EvaluationContext& context() const noexcept;
   const core::FaultCounters& faults() const noexcept;
 
  private:

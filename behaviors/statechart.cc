@@ -42,13 +42,15 @@ Statechart::Statechart(const Chart& chart, const double* signals, std::span<doub
       history_counts_(idx(chart.history_count)),
       target_scratch_(chart.states.size() * 2 + chart.targets.size()),
       internal_(kQueueCapacity),
-      external_(kQueueCapacity) {
+      external_(kQueueCapacity),
+      guard_outcomes_(chart.transitions.size()) {
   active_list_.reserve(chart.states.size());
   atomic_list_.reserve(chart.states.size());
   candidates_.reserve(chart.states.size() + 1);
   selected_.reserve(chart.states.size() + 1);
   marks_.reserve(kRecordCapacity);
   taken_.reserve(kRecordCapacity);
+  events_.reserve(kRecordCapacity);
   logs_.reserve(kRecordCapacity);
   script_requests_.reserve(kRecordCapacity);
   context_.signals = signals;
@@ -74,6 +76,7 @@ void Statechart::begin_tick(std::int64_t tick) noexcept {
   }
   recorded_start_ = false;
   taken_.clear();
+  events_.clear();
   steps_ = 0;
   if (overflowed_) {
     overflowed_ = false;
@@ -131,6 +134,7 @@ void Statechart::run() noexcept {
 // Takes the next event from a queue; scripts that handle it are asked to.
 void Statechart::take_event(EventQueue& queue) noexcept {
   const int event = queue.pop();
+  if (events_.size() < kRecordCapacity) events_.push_back(event);
   if (chart_.script_events.empty() || chart_.script_events[idx(event)] == 0) return;
   if (script_requests_.size() < kRecordCapacity) {
     script_requests_.push_back({true, event});

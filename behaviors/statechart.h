@@ -25,6 +25,7 @@ class EventQueue {
  public:
   explicit EventQueue(int capacity) : items_(static_cast<std::size_t>(capacity)) {}
   bool empty() const noexcept { return count_ == 0; }
+  std::size_t room() const noexcept { return items_.size() - static_cast<std::size_t>(count_); }
   bool push(int event) noexcept;
   int front() const noexcept { return items_[static_cast<std::size_t>(first_)]; }
   int pop() noexcept;
@@ -64,6 +65,12 @@ class Statechart {
   bool finished() const noexcept { return finished_; }
   std::span<const int> marks() const noexcept { return marks_; }
   std::span<const int> transitions_taken() const noexcept { return taken_; }
+  // Events that came to their turn in this tick, in order; those that enabled nothing, too.
+  std::span<const int> events_taken() const noexcept { return events_; }
+  // What a transition's guard has given so far: bit 0 false, bit 1 true.
+  std::uint8_t guard_outcomes(int transition) const noexcept {
+    return guard_outcomes_[idx(transition)];
+  }
   std::span<const LogRecord> logs() const noexcept { return logs_; }
   // What this tick asks of the scripts, in order.
   std::span<const ScriptRequest> script_requests() const noexcept { return script_requests_; }
@@ -129,7 +136,8 @@ class Statechart {
   std::vector<int> history_counts_;  // by slot, 0: never left
   mutable std::vector<int> target_scratch_;
   EventQueue internal_, external_;
-  std::vector<int> marks_, taken_;
+  std::vector<int> marks_, taken_, events_;
+  mutable std::vector<std::uint8_t> guard_outcomes_;  // by transition
   std::vector<LogRecord> logs_;
   std::vector<ScriptRequest> script_requests_;
   core::FaultCounters faults_;

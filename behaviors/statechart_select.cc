@@ -49,7 +49,9 @@ bool Statechart::enabled(const Trigger& trigger, int event) const noexcept {
   }
   if (trigger.guard < 0) return true;
   const double value = evaluate(chart_.expressions, trigger.guard, context_);
-  return std::isfinite(value) && value != 0.0;
+  const bool holds = std::isfinite(value) && value != 0.0;
+  guard_outcomes_[idx(t)] |= holds ? 2U : 1U;
+  return holds;
 }
 
 // What history targets stand for now; other targets stand for themselves.

@@ -107,6 +107,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       signals_(behavior.signals),
       model_(behavior.robot, settings.deviation),
       machine_(std::make_unique<behaviors::Machine>(behavior, signals_)),
+      edits_(behavior),
       controller_(model_, torque_limits(behavior.robot), controller_sizes(behavior), period_),
       estimator_(behavior.robot.joint_count()),
       planners_(behavior, model_, latency_ticks(settings.planner_latency, period_)),
@@ -144,16 +145,19 @@ LoopState ControlLoop::tick() noexcept {
 
 bool ControlLoop::sense() noexcept {
   if (scripts_ && lockstep_) scripts_->wait();
-  const bool fresh = hardware_.read(sensors_);
-  if (!fresh) faults_.add(core::Fault::sensor_stale);
-  return fresh;
+  fresh_ = hardware_.read(sensors_);
+  if (!fresh_) faults_.add(core::Fault::sensor_stale);
+  return fresh_;
 }
 
 void ControlLoop::compute() noexcept {
+  edits_.apply(tick_, *machine_);
   estimator_.estimate(sensors_, estimate_);
   model_.update(estimate_);
   write_measured_signals();
   handle(safety_.check_state(sensors_, model_));
+  if (!fresh_ && was_fresh_) react(core::Fault::sensor_stale);  // counted where it was read
+  was_fresh_ = fresh_;
   planners_.deliver(tick_, *machine_);
   if (scripts_) scripts_->deliver(*machine_);
   machine_->tick(tick_, measure_);
@@ -188,17 +192,21 @@ void ControlLoop::handle(const SafetyFindings& findings) noexcept {
     if (mine && !active_[index]) {
       faults_.add(fault);
       last_place_[index] = place;
-      const core::Reaction reaction = behavior_.robot.reactions[index];
-      machine_->raise_fault(fault, reaction);
-      if (fault == core::Fault::fall || fault == core::Fault::simulator_warning) {
-        if (state_ != LoopState::fallen) ended_by_ = fault;
-        state_ = LoopState::fallen;
-      } else if (reaction == core::Reaction::safe_stop && state_ == LoopState::running) {
-        state_ = LoopState::stopped;
-        ended_by_ = fault;
-      }
+      react(fault);
     }
     seen_[index] |= mine;
+  }
+}
+
+void ControlLoop::react(core::Fault fault) noexcept {
+  const core::Reaction reaction = behavior_.robot.reactions[static_cast<std::size_t>(fault)];
+  machine_->raise_fault(fault, reaction);
+  if (fault == core::Fault::fall || fault == core::Fault::simulator_warning) {
+    if (state_ != LoopState::fallen) ended_by_ = fault;
+    state_ = LoopState::fallen;
+  } else if (reaction == core::Reaction::safe_stop && state_ == LoopState::running) {
+    state_ = LoopState::stopped;
+    ended_by_ = fault;
   }
 }
 

@@ -11,6 +11,7 @@
 #include "behaviors/machine.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
+#include "engine/edit_door.h"
 #include "engine/estimator.h"
 #include "engine/planner_link.h"
 #include "engine/safety.h"
@@ -79,7 +80,13 @@ class ControlLoop {
   }
   // The fault that made the state fallen or stopped; Fault::count: none did.
   core::Fault ended_by() const noexcept { return ended_by_; }
+  // Live edits: submitted here, applied at the start of a tick.
+  EditDoor& edits() noexcept { return edits_; }
+  const EditDoor& edits() const noexcept { return edits_; }
   ScriptLink* scripts() noexcept { return scripts_.get(); }  // nullptr: the behavior has none
+
+  // While planners are dropped none of them answers: a fault to be tried on purpose.
+  void drop_planners(bool on) noexcept { planners_.drop(on); }
 
   // Ends the run: the machine's safe state, then the hardware's safe stop.
   void safe_stop() noexcept;
@@ -100,6 +107,7 @@ class ControlLoop {
   };
 
   void handle(const SafetyFindings& findings) noexcept;
+  void react(core::Fault fault) noexcept;
   void observe_support() noexcept;
   void write_measured_signals() noexcept;
   void write_control_signals() noexcept;
@@ -113,6 +121,7 @@ class ControlLoop {
   core::SignalTable signals_;
   model::ControlModel model_;
   std::unique_ptr<behaviors::Machine> machine_;
+  EditDoor edits_;
   tasks::WholeBodyController controller_;
   TrueStateEstimator estimator_;
   PlannerLink planners_;
@@ -132,6 +141,7 @@ class ControlLoop {
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
   std::array<FaultPlace, core::kFaultCount> last_place_{}, worst_place_{};
   core::Fault ended_by_ = core::Fault::count;
+  bool fresh_ = true, was_fresh_ = true;          // new sensor data in this tick, in the previous
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;
 };

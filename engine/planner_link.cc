@@ -67,7 +67,7 @@ void PlannerLink::observe(std::span<const int> stance_contacts, std::span<const 
 
 void PlannerLink::deliver(std::int64_t tick, behaviors::Machine& machine) noexcept {
   while (count_ > 0 && pending_[head_].due <= tick) {
-    machine.deliver(pending_[head_].answer);
+    if (!dropped_) machine.deliver(pending_[head_].answer);
     head_ = (head_ + 1) % pending_.size();
     --count_;
   }

@@ -25,6 +25,8 @@ class PlannerLink {
                double period) noexcept;
   // Hands over the answers due at this tick.
   void deliver(std::int64_t tick, behaviors::Machine& machine) noexcept;
+  // While planners are dropped no answer arrives: what is due then is lost.
+  void drop(bool on) noexcept { dropped_ = on; }
   // Answers this tick's requests, to be delivered later.
   void take(std::int64_t tick, behaviors::Machine& machine) noexcept;
 
@@ -47,6 +49,7 @@ class PlannerLink {
   std::array<double, core::kMaxContacts> contact_side_{};         // +1 left, -1 right of the base
   std::array<std::array<double, 2>, core::kMaxPlanners> goal_{};  // m, world, as approached
   bool primed_ = false;
+  bool dropped_ = false;
 };
 
 }  // namespace footfall::engine

@@ -34,6 +34,8 @@ SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
                                          const model::ControlModel& model) noexcept {
   SafetyFindings findings;
   if (sensors.backend_fault) findings.add(Fault::simulator_warning);
+  if (!sensors.imu_fresh) findings.add(Fault::imu_stale);
+  if (!sensors.mocap_fresh) findings.add(Fault::mocap_stale);
   const model::State& state = model.state();
   bool finite = true;
   for (int j = 0; j < model.joint_count(); ++j) {

@@ -21,6 +21,9 @@ struct Sensors {
   std::array<bool, core::kMaxContacts> contact{};                 // foot switch closed
   std::array<std::array<double, 3>, core::kMaxContacts> force{};  // N, ground on robot, world
 
+  bool imu_fresh = true;    // the IMU's data are new
+  bool mocap_fresh = true;  // motion capture's are
+
   bool has_truth = false;                  // a simulator tells the base's true state
   std::array<double, 3> p_WB{};            // base origin, m, world
   std::array<double, 4> q_WB{1, 0, 0, 0};  // base orientation, w x y z

@@ -1,8 +1,10 @@
 // The loop around the loop; see run.h.
 #include "lab/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 #include "engine/pacer.h"
 #include "lab/run_log.h"
@@ -11,6 +13,8 @@ namespace footfall::lab {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kLongestMotion = 1e5;  // s, of a goal in a run without an end
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -25,9 +29,10 @@ class Run {
 
   RunResult execute() {
     loop_.start();
-    if (has_goal(loop_.behavior())) goal_ = current_goal();
-    start_goal_ = goal_;
-    if (spec_.goal) goal_ = start_goal_ = *spec_.goal;
+    for (const engine::EditBatch& edit : goal_edits(loop_.behavior(), spec_)) {
+      const engine::EditReply reply = loop_.edits().submit(edit);
+      if (!reply.accepted()) throw std::runtime_error("--goal: error: " + reply.reasons.front());
+    }
     engine::Pacer pacer(loop_.period());
     started_ = Clock::now();
     while (!ended()) {
@@ -40,14 +45,20 @@ class Run {
   }
 
  private:
+  // Where the robot is told to be; the origin if its behavior has no goal.
   std::array<double, 2> current_goal() const {
+    if (!has_goal(loop_.behavior())) return {};
     const auto slot = static_cast<std::size_t>(loop_.behavior().planners.front().goal_slot);
     return {loop_.machine().parameters()[slot], loop_.machine().parameters()[slot + 1]};
   }
 
   void one_tick() {
-    move_goal();
+    take_answers();
     fire_events();
+    if (spec_.observer) {
+      spec_.observer->before_tick(
+          {metrics_.counter().steps(), last_step_at_, metrics_.last_step_duration()}, log_);
+    }
     loop_.sense();
     // A fault's tick enters `safe`: what ended the run is told by the states before it.
     const auto active = loop_.machine().active_atomic();
@@ -58,28 +69,19 @@ class Run {
     if (spec_.arm_allocations) spec_.arm_allocations(false);
     const auto spent = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - before);
     result_.tick_time.add(spent.count());
-    const StepEvent step = metrics_.observe(goal_);
+    const StepEvent step = metrics_.observe(current_goal());
     if (step.foot >= 0) last_step_at_ = loop_.time();
     log_.after_tick(step);
+    if (spec_.observer) spec_.observer->after_tick();
     loop_.actuate();
     if (spec_.status && loop_.ticks() % 256 == 0) show_status();
   }
 
-  // What the run was told moves the goal; without that it is the behavior's own, which may change.
-  void move_goal() {
-    if (!has_goal(loop_.behavior())) return;
-    if (!spec_.goal && !spec_.goal_velocity) {
-      goal_ = current_goal();
-      return;
+  // Nobody waits for them here; what was applied is in the log.
+  void take_answers() {
+    engine::EditAnswer answer;
+    while (loop_.edits().take_answer(answer)) {
     }
-    if (spec_.goal_velocity) {
-      for (std::size_t k = 0; k < 2; ++k) {
-        goal_[k] = start_goal_[k] + (*spec_.goal_velocity)[k] * loop_.time();
-      }
-    }
-    const auto slot = static_cast<std::size_t>(loop_.behavior().planners.front().goal_slot);
-    loop_.machine().parameters()[slot] = goal_[0];
-    loop_.machine().parameters()[slot + 1] = goal_[1];
   }
 
   void fire_events() {
@@ -158,7 +160,6 @@ class Run {
   RunMetrics metrics_;
   RunLog log_;
   RunResult result_;
-  std::array<double, 2> goal_{}, start_goal_{};
   Clock::time_point started_;
   std::vector<int> states_before_;  // active atomic states at the start of the tick
   double last_status_ = 0.0;
@@ -169,6 +170,43 @@ class Run {
 
 bool has_goal(const behaviors::Behavior& behavior) {
   return !behavior.planners.empty() && behavior.planners.front().goal_slot >= 0;
+}
+
+std::vector<engine::EditBatch> goal_edits(const behaviors::Behavior& behavior,
+                                          const RunSpec& spec) {
+  if (!has_goal(behavior) || (!spec.goal && !spec.goal_velocity)) return {};
+  const int slot = behavior.planners.front().goal_slot;
+  const auto& all = behavior.parameters;
+  const auto owner = std::ranges::find_if(all, [slot](const behaviors::ParameterInfo& info) {
+    return slot >= info.slot && slot < info.slot + info.size;
+  });
+  const auto to = [&](const std::array<double, 2>& goal, double over) {
+    const auto parameter = static_cast<int>(owner - all.begin());
+    engine::EditBatch edit;
+    edit.source = engine::EditSource::command;
+    for (int k = 0; k < 2; ++k) {
+      edit.values.push_back(
+          {parameter, slot - owner->slot + k, {goal[static_cast<std::size_t>(k)]}});
+    }
+    edit.over = over;
+    return edit;
+  };
+  std::vector<engine::EditBatch> edits;
+  const auto x = behavior.values.begin() + slot;
+  const std::array<double, 2> start = spec.goal.value_or(std::array<double, 2>{x[0], x[1]});
+  if (spec.goal) edits.push_back(to(start, 0.0));
+  if (!spec.goal_velocity) return edits;
+  // Until the run ends, or the goal's range does.
+  double time = spec.max_time > 0.0 ? spec.max_time : kLongestMotion;
+  std::array<double, 2> end = start;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double v = (*spec.goal_velocity)[k];
+    if (v == 0.0 || !owner->has_range()) continue;
+    time = std::min(time, std::max(0.0, ((v > 0.0 ? owner->max : owner->min) - start[k]) / v));
+  }
+  for (std::size_t k = 0; k < 2; ++k) end[k] += (*spec.goal_velocity)[k] * time;
+  edits.push_back(to(end, time));
+  return edits;
 }
 
 RunResult run(engine::ControlLoop& loop, RunSpec& spec) { return Run(loop, spec).execute(); }

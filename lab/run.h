@@ -34,12 +34,32 @@ struct RunStatus {
   double real_time_factor = 0.0;
 };
 
+class RunLog;
+
+// Where a run is in its steps.
+struct StepClock {
+  std::int64_t steps = 0;      // counted so far
+  double last_step_at = 0.0;   // s
+  double last_duration = 0.0;  // s; 0 before there are two
+};
+
+// Looks on while a run goes on, outside of the tick.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  // What acts on the robot from outside is done here.
+  virtual void before_tick(const StepClock& steps, RunLog& log) = 0;
+  // After compute(): signals and machine are those of this tick.
+  virtual void after_tick() = 0;
+};
+
 struct RunSpec {
   std::int64_t max_steps = 0;                          // 0: no bound
   double max_time = 20.0;                              // s; 0: no bound
   std::optional<std::array<double, 2>> goal;           // m, world
   std::optional<std::array<double, 2>> goal_velocity;  // m/s, world; the goal moves from the start
   std::vector<ScheduledEvent> events;
+  RunObserver* observer = nullptr;
   bool realtime = false;  // paced by the wall clock
   int log_every = 6;      // ticks; 1: all
   engine::LogWriter* log = nullptr;
@@ -64,8 +84,13 @@ struct RunResult {
   double wall_time = 0.0;
 };
 
-// Runs from start to end. Throws what ControlLoop::start() throws; nothing after that.
+// Runs from start to end. Throws what ControlLoop::start() throws, and std::runtime_error if the
+// goal is out of its range; nothing after that.
 RunResult run(engine::ControlLoop& loop, RunSpec& spec);
+
+// The edits that spec.goal and spec.goal_velocity mean: the goal at once, then moving until the run
+// or the goal's range ends. Empty if the behavior has no goal.
+std::vector<engine::EditBatch> goal_edits(const behaviors::Behavior& behavior, const RunSpec& spec);
 
 // Whether the behavior has a parameter that the goal options can move.
 bool has_goal(const behaviors::Behavior& behavior);

@@ -26,6 +26,8 @@ struct ScenarioContext {
   }
 };
 
+// NAME beside the file in which it is written.
+std::string beside(const ScenarioContext& context, const core::YamlNode& node);
 // Exactly one of these keys: error missing-key at the map, misplaced-key at the second.
 bool expect_one_of(ScenarioContext& context, const core::YamlNode& map,
                    const std::vector<std::string>& keys);
@@ -36,5 +38,6 @@ std::optional<double> read_duration(ScenarioContext& context, const core::YamlNo
 
 void load_script(ScenarioContext& context, const core::YamlNode& node);        // scenario_script.cc
 void load_expectations(ScenarioContext& context, const core::YamlNode& node);  // scenario_expect.cc
+void load_golden(ScenarioContext& context, const core::YamlNode& node);        // scenario_golden.cc
 
 }  // namespace footfall::lab

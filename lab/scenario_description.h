@@ -69,16 +69,30 @@ struct Reduction {
 };
 
 struct Expectation {
-  enum class Kind : std::uint8_t { that, never, sequence };
+  enum class Kind : std::uint8_t { that, never, sequence, end };
   core::Mark mark;
   Kind kind = Kind::that;
   int expression = -1;      // into ScenarioDescription::expressions
   std::vector<int> states;  // of the sequence
+  std::vector<int> ends;    // into kScenarioEnds: any of them
+  bool timed = false;       // a time in which it is judged was written
   double from = 0.0;        // s, judged from here
   std::optional<double> to;
   std::optional<double> within;  // s
   double part = 1.0;             // of the seeds in which it must hold
   std::string text;              // as written
+};
+
+// A recorded trace that a run must follow.
+struct GoldenSignal {
+  int signal = 0;          // into Behavior::signals
+  double tolerance = 0.0;  // SI
+};
+struct GoldenSpec {
+  core::Mark mark;
+  std::string path;    // of the CSV file
+  double rate = 50.0;  // Hz, of its rows
+  std::vector<GoldenSignal> signals;
 };
 
 struct ScenarioDescription {
@@ -91,10 +105,13 @@ struct ScenarioDescription {
   double duration = 0.0;  // s
   std::vector<ScriptEntry> script;
   std::vector<Expectation> expectations;
+  std::optional<GoldenSpec> golden;
   std::unique_ptr<behaviors::Behavior> behavior;
   core::SignalTable signals;  // the behavior's, then `steps` and those of the reductions
   std::vector<Reduction> reductions;
   behaviors::ExpressionPool expressions;
+  std::vector<std::string> files;           // by core::Mark::file of what the scenario says
+  std::vector<std::string> behavior_files;  // likewise of what its behavior says
 };
 
 }  // namespace footfall::lab

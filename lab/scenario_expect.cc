@@ -74,6 +74,7 @@ void read_part(ScenarioContext& context, const YamlNode& node, Expectation& expe
 
 void read_times(ScenarioContext& context, const YamlNode& node, Expectation& expectation) {
   const YamlNode* between = node.find("between");
+  expectation.timed = node.find("after") != nullptr || between != nullptr;
   if (const YamlNode* after = node.find("after")) {
     expectation.from = read_time_in_run(context, *after).value_or(0.0);
     if (between != nullptr) expect_one_of(context, node, {"after", "between"});
@@ -89,7 +90,8 @@ void read_times(ScenarioContext& context, const YamlNode& node, Expectation& exp
   }
   if (const YamlNode* within = node.find("within")) {
     expectation.within = read_duration(context, *within);
-    if (expectation.kind == Expectation::Kind::never) {
+    if (expectation.kind == Expectation::Kind::never ||
+        expectation.kind == Expectation::Kind::end) {
       context.error(within->mark, "misplaced-key",
                     "'within' has a meaning only beside 'that' or 'sequence'");
     }
@@ -105,10 +107,28 @@ void read_sequence(ScenarioContext& context, const YamlNode& node, Expectation& 
   }
   for (const YamlNode& item : node.items) {
     if (!core::expect_scalar(item, "the name of a state", context.diagnostics)) continue;
+    expectation.text += (expectation.text.empty() ? "sequence: " : ", ") + item.scalar;
     if (context.names != nullptr) {
       expectation.states.push_back(context.names->require_target(0, item));
     }
   }
+}
+
+// One way in which a run may end, or several.
+void read_end(ScenarioContext& context, const YamlNode& node, Expectation& expectation) {
+  expectation.kind = Expectation::Kind::end;
+  const auto take = [&](const YamlNode& item) {
+    const auto word = core::read_choice(item, kScenarioEnds, context.diagnostics, "an end");
+    if (!word) return;
+    expectation.ends.push_back(*word);
+    expectation.text += (expectation.text.empty() ? "end: " : ", ") + item.scalar;
+  };
+  if (!node.is_sequence()) {
+    take(node);
+    return;
+  }
+  if (node.items.empty()) context.error(node.mark, "empty-value", "no run ends so");
+  for (const YamlNode& item : node.items) take(item);
 }
 
 void read_expectation(ScenarioContext& context, const YamlNode& node) {
@@ -121,7 +141,7 @@ void read_expectation(ScenarioContext& context, const YamlNode& node) {
     return;
   }
   core::check_keys(node, kExpectationKeys, context.diagnostics);
-  expect_one_of(context, node, {"that", "never", "sequence"});
+  expect_one_of(context, node, {"that", "never", "sequence", "end"});
   if (const YamlNode* that = node.find("that")) {
     expectation.text = that->scalar;
     expectation.expression = compile_condition(context, *that, true);
@@ -133,6 +153,15 @@ void read_expectation(ScenarioContext& context, const YamlNode& node) {
   }
   if (const YamlNode* sequence = node.find("sequence")) {
     read_sequence(context, *sequence, expectation);
+  }
+  if (const YamlNode* end = node.find("end")) {
+    read_end(context, *end, expectation);
+    for (const char* key : {"after", "between"}) {
+      const YamlNode* time = node.find(key);
+      if (time == nullptr) continue;
+      context.error(time->mark, "misplaced-key",
+                    fmt::format("'{}' has no meaning beside 'end'", key));
+    }
   }
   read_times(context, node, expectation);
   context.scenario.expectations.push_back(std::move(expectation));

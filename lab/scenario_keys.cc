@@ -24,6 +24,7 @@ constexpr KeySpec kScenarioRows[] = {
     key("script", list(map_of(kScriptKeys)), "what happens to the robot from outside"),
     key("expect", list(condition()), list(map_of(kExpectationKeys)),
         "what must hold; a lone condition is judged at the end of every run"),
+    key("golden", map_of(kGoldenKeys), "a recorded trace that the first seed's run must follow"),
 };
 
 constexpr WordSpec kInjectedFaultRows[] = {
@@ -31,6 +32,13 @@ constexpr WordSpec kInjectedFaultRows[] = {
     {"imu.dropout", "no IMU data"},
     {"sensor.dropout", "no data of any sensor"},
     {"planner.dropout", "no answers of planners"},
+};
+
+constexpr WordSpec kScenarioEndRows[] = {
+    {"time", "`for` is over"},
+    {"finished", "a final state of the root was entered"},
+    {"fall", "the robot fell"},
+    {"fault", "a fault stopped it"},
 };
 
 constexpr KeySpec kScriptRows[] = {
@@ -67,10 +75,22 @@ constexpr KeySpec kPushRows[] = {
         .otherwise("0 deg"),
 };
 
+constexpr KeySpec kGoldenRows[] = {
+    key("file", text_of("the path of a CSV file"), "the trace, relative to this file")
+        .otherwise("NAME.golden.csv, with the scenario file's name"),
+    key("tolerance", by_name(any_quantity()),
+        "signals by name, and how far each may be from the trace")
+        .required(),
+    key("rate", quantity(kRate), "rows of the trace in a second").otherwise("50 Hz"),
+    key("doc", text_of("a text"), "why, in a line"),
+};
+
 constexpr KeySpec kExpectationRows[] = {
     key("that", condition(), "a condition; `max mean rms count` of a signal are of the whole time"),
     key("never", condition(), "a condition that may hold in no tick"),
     key("sequence", list(name_of("a state")), "states that are entered in this order"),
+    key("end", choice(kScenarioEndRows), list(choice(kScenarioEndRows)),
+        "how the run ends; where nothing is said: by `time` or `finished`"),
     key("after", quantity(kTime), "judged from this time in the run on"),
     key("between", pair(quantity(kTime)), "judged between these times in the run"),
     key("within", quantity(kTime), "the time that `sequence` may take, or by which `that` holds"),
@@ -95,8 +115,13 @@ constinit const core::KeyTable kPushKeys = {
 constinit const core::KeyTable kExpectationKeys = {.id = "expectation",
                                                    .doc = "Something that must hold.",
                                                    .keys = kExpectationRows,
-                                                   .one_of = {"that never sequence"}};
+                                                   .one_of = {"that never sequence end"}};
+constinit const core::KeyTable kGoldenKeys = {
+    .id = "golden",
+    .doc = "A recorded trace and how near to it a run must stay.",
+    .keys = kGoldenRows};
 constinit const std::span<const core::WordSpec> kInjectedFaults = kInjectedFaultRows;
+constinit const std::span<const core::WordSpec> kScenarioEnds = kScenarioEndRows;
 
 constinit const core::FileTable kScenarioFile = {
     .kind = "scenario", .newest = 1, .root = &kScenarioKeys};

@@ -11,7 +11,10 @@ extern const core::KeyTable kScriptKeys;
 extern const core::KeyTable kMomentKeys;
 extern const core::KeyTable kPushKeys;
 extern const core::KeyTable kExpectationKeys;
+extern const core::KeyTable kGoldenKeys;
 extern const std::span<const core::WordSpec> kInjectedFaults;  // in the order of InjectedFault
+
+extern const std::span<const core::WordSpec> kScenarioEnds;  // of an `end:` expectation
 
 extern const core::FileTable kScenarioFile;
 

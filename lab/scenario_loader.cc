@@ -29,13 +29,6 @@ bool is_file(const std::string& path) {
   return fs::is_regular_file(path, error);
 }
 
-// NAME beside the file in which it is written.
-std::string beside(const ScenarioContext& context, const YamlNode& node) {
-  const fs::path file = node.mark.file < 0 ? fs::path(context.scenario.path)
-                                           : fs::path(context.diagnostics.file(node.mark.file));
-  return (file.parent_path() / node.scalar).string();
-}
-
 std::string find_behavior(const ScenarioContext& context, const YamlNode& node,
                           const std::vector<std::string>& search) {
   std::vector<std::string> candidates = {beside(context, node), node.scalar};
@@ -102,6 +95,7 @@ void load_named_behavior(ScenarioContext& context, const YamlNode& root,
   core::Diagnostics found;
   scenario.behavior = behaviors::load_behavior(scenario.behavior_path, options, found);
   take_errors(context, found);
+  for (int k = 0; k < found.file_count(); ++k) scenario.behavior_files.push_back(found.file(k));
   if (scenario.behavior == nullptr) return;
   scenario.signals = scenario.behavior->signals;
   scenario.signals.add("steps", core::kNone, "steps since the start of the run");
@@ -191,6 +185,12 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
 
 }  // namespace
 
+std::string beside(const ScenarioContext& context, const YamlNode& node) {
+  const fs::path file = node.mark.file < 0 ? fs::path(context.scenario.path)
+                                           : fs::path(context.diagnostics.file(node.mark.file));
+  return (file.parent_path() / node.scalar).string();
+}
+
 bool expect_one_of(ScenarioContext& context, const YamlNode& map,
                    const std::vector<std::string>& keys) {
   std::string first;
@@ -233,6 +233,13 @@ std::optional<double> read_duration(ScenarioContext& context, const YamlNode& no
   return std::nullopt;
 }
 
+bool is_scenario_file(const std::string& path) {
+  if (!is_file(path)) return false;
+  core::Diagnostics ignored;
+  const YamlNode root = core::load_yaml_with_base(path, ignored);
+  return root.is_map() && !root.entries.empty() && root.entries.front().key == "scenario";
+}
+
 ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,
                                   core::Diagnostics& diagnostics) {
   ScenarioDescription scenario;
@@ -246,6 +253,8 @@ ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions
   load_bodies(context);
   if (const YamlNode* script = root.find("script")) load_script(context, *script);
   if (const YamlNode* expect = root.find("expect")) load_expectations(context, *expect);
+  if (const YamlNode* golden = root.find("golden")) load_golden(context, *golden);
+  for (int k = 0; k < diagnostics.file_count(); ++k) scenario.files.push_back(diagnostics.file(k));
   return scenario;
 }
 

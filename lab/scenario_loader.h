@@ -14,6 +14,9 @@ struct ScenarioOptions {
   std::vector<std::string> search;
 };
 
+// Whether a file's first key, or its base's, is `scenario`; false if it cannot be read.
+bool is_scenario_file(const std::string& path);
+
 // Problems go to diagnostics, errors of the behavior too; the result is meaningful only without
 // errors. The world is left to who knows worlds: see ScenarioDescription::world.
 ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,

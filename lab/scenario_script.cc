@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "engine/edit_door.h"
 #include "lab/scenario_context.h"
 #include "lab/scenario_keys.h"
 
@@ -82,27 +83,13 @@ void read_moment(ScenarioContext& context, const YamlNode& node, Moment& moment)
   }
 }
 
-// Events of the engine cannot come from outside.
-bool is_built_in(const Behavior& behavior, int event) {
-  const auto in = [event](const std::vector<int>& events) {
-    return std::ranges::find(events, event) != events.end();
-  };
-  const bool done = std::ranges::any_of(
-      behavior.states, [event](const auto& state) { return state.done_event == event; });
-  const bool planner = std::ranges::any_of(behavior.planners, [event](const auto& info) {
-    return event == info.done_event || event == info.late_event || event == info.failed_event;
-  });
-  return done || planner || event == behavior.error_execution || in(behavior.touchdown_events) ||
-         in(behavior.liftoff_events) || in(behavior.fault_events) || in(behavior.changed_events);
-}
-
 int read_raise(ScenarioContext& context, const YamlNode& node) {
   if (!core::expect_scalar(node, "the name of an event", context.diagnostics)) return -1;
   if (context.names == nullptr) return -1;
   const int event = context.scenario.behavior->find_event(node.scalar);
   if (event < 0) {
     report_unknown_event(context, node, ": list it in its `events`");
-  } else if (is_built_in(*context.scenario.behavior, event)) {
+  } else if (engine::is_built_in_event(*context.scenario.behavior, event)) {
     context.error(node.mark, "built-in-event",
                   fmt::format("'{}' is raised by the engine only", node.scalar));
   }

@@ -106,6 +106,7 @@ void MujocoBackend::start() {
   for (auto& line : delay_line_) std::fill(line.begin(), line.end(), 0.0);
   delay_head_ = 0;
   pushes_ = {};
+  held_ = {};
   tick_ = 0;
   stopped_ = false;
   warnings_at_start_ = warnings();
@@ -174,36 +175,10 @@ void MujocoBackend::write(const hal::Commands& commands) noexcept {
     const std::vector<double>& now = delay_line_[delay_head_];  // the oldest: written `delay` ago
     for (std::size_t j = 0; j < now.size(); ++j)
       data_->ctrl[actuator_[j]] = stopped_ ? 0.0 : now[j];
-    apply_pushes();
+    apply_forces();
     mj_step(model_, data_);
   }
   ++tick_;
-}
-
-void MujocoBackend::apply_pushes() noexcept {
-  for (const ActivePush& p : pushes_) {
-    if (p.body != 0) std::fill_n(data_->xfrc_applied + 6 * p.body, 3, 0.0);
-  }
-  // Pushes that overlap on one body add up.
-  for (ActivePush& p : pushes_) {
-    if (p.body == 0) continue;
-    double* force = data_->xfrc_applied + 6 * p.body;
-    for (std::size_t k = 0; k < 3 && p.steps_left > 0; ++k) force[k] += p.force[k];
-    if (p.steps_left-- <= 0) p = {};
-  }
-}
-
-bool MujocoBackend::push(int body, double force, double direction, double duration) noexcept {
-  const auto free_slot =
-      std::find_if(pushes_.begin(), pushes_.end(), [](const ActivePush& p) { return p.body == 0; });
-  if (free_slot == pushes_.end()) return false;
-  const double* q = data_->qpos + 3;
-  const double yaw =
-      std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
-  free_slot->body = body;
-  free_slot->force = {force * std::cos(yaw + direction), force * std::sin(yaw + direction), 0.0};
-  free_slot->steps_left = static_cast<int>(std::llround(duration / model_->opt.timestep));
-  return true;
 }
 
 int MujocoBackend::find_body(const std::string& name) const {

@@ -25,6 +25,15 @@ struct ActivePush {
 };
 inline constexpr std::size_t kMaxPushes = 32;  // at once
 
+// A body that people hold where it was: a stiff, well damped spring at its centre of mass, and at
+// the floating base one in its orientation, too.
+struct HeldBody {
+  int body = 0;
+  std::array<double, 3> position{};     // m, world
+  std::array<double, 4> orientation{};  // w x y z
+};
+inline constexpr std::size_t kMaxHeld = 8;
+
 // The facts of the compiled physics that every figure rests on; printed with a run's summary.
 struct PhysicsFacts {
   double timestep = 0.0;         // s
@@ -56,6 +65,8 @@ class MujocoBackend final : public hal::Hardware {
   // Begins a push on a body's CoM; direction in rad from the robot's heading, 0 forward, 90° left.
   // Names were checked by find_body(). At most kMaxPushes at once; false if there are more.
   bool push(int body, double force, double direction, double duration) noexcept;
+  // Holds a body where it is, or lets go of it; false if too many are held.
+  bool hold(int body, bool on) noexcept;
   int find_body(const std::string& name) const;  // -1: none
   PhysicsFacts facts() const;
 
@@ -68,7 +79,8 @@ class MujocoBackend final : public hal::Hardware {
   struct Empty {};
   MujocoBackend(Empty, const model::RobotDescription& robot, const WorldDescription& world,
                 std::uint64_t seed);
-  void apply_pushes() noexcept;
+  void apply_forces() noexcept;
+  void apply_hold(const HeldBody& held) noexcept;
   void sense_contacts(hal::Sensors& sensors) noexcept;
   std::int64_t warnings() const noexcept;
   void place_at_posture();
@@ -84,6 +96,7 @@ class MujocoBackend final : public hal::Hardware {
   std::vector<std::vector<double>> delay_line_;  // commands on their way, one a physics step
   std::size_t delay_head_ = 0;
   std::array<ActivePush, kMaxPushes> pushes_{};
+  std::array<HeldBody, kMaxHeld> held_{};
   std::int64_t warnings_at_start_ = 0;
   std::int64_t tick_ = 0;
   bool stopped_ = false;

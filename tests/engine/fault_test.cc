@@ -179,6 +179,28 @@ TEST(Faults, StaleSensorsAreCounted) {
   EXPECT_EQ(rig.faults(Fault::sensor_stale), 7);
 }
 
+TEST(Faults, StaleSensorsAreAnEventEachTimeTheyBegin) {
+  StubRig rig(R"(
+behavior: 1
+robot: hume
+parameters: {times: {value: 0, range: [0, 9]}}
+machine:
+  contacts: [right_foot, left_foot]
+  tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 20}}}
+  transitions: [{on: fault.sensor.stale, do: [{set: {times: "= $times + 1"}}]}]
+  states: {one: {}}
+)",
+              kHeavy);
+  rig.loop->start();
+  for (const bool stale : {false, true, false, true, false}) {
+    rig.hardware->stale = stale;
+    run(rig, 7);
+  }
+  EXPECT_EQ(rig.loop->machine().parameters()[0], 2.0);
+  EXPECT_EQ(rig.faults(Fault::sensor_stale), 14);
+  EXPECT_EQ(rig.loop->state(), LoopState::running);
+}
+
 TEST(Faults, ASafeStopEntersTheSafeStateAndStopsTheHardware) {
   StubRig rig(kHold, 1.0);
   rig.loop->start();

@@ -131,5 +131,17 @@ TEST(PlannerLink, WithoutAFilterThePlannerSeesWhatIsMeasured) {
   EXPECT_NEAR(link.predicted(1), -0.2, 1e-12);
 }
 
+// What is due while planners are dropped is lost; what is asked then and due later comes.
+TEST(PlannerLink, DroppedPlannersDoNotAnswer) {
+  Link link(2);
+  for (int k = 0; k < 30; ++k) {
+    link.planners.drop(k >= 10 && k < 20);
+    link.state.v_WB[0] = 0.001 * k;
+    link.tick();
+    const int asked = k < 10 ? k - 2 : k < 20 ? 7 : k - 2;
+    EXPECT_NEAR(link.predicted(0), k < 2 ? 0.0 : 0.001 * asked, 1e-12) << k;
+  }
+}
+
 }  // namespace
 }  // namespace footfall::tests

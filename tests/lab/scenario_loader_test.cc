@@ -214,6 +214,26 @@ TEST_F(ScenarioLoader, KeysThatDoNotFitTogetherAreRefused) {
   EXPECT_EQ(problems_of("expect: [{never: rms(com.pos.z) < 1 m}]"),
             "4:18: error: unknown function 'rms'\n");
 }
+TEST_F(ScenarioLoader, AGoldenTraceAndAnEndAreChecked) {
+  EXPECT_EQ(problems_of("golden: {tolerance: {com.pos.zz: 2 mm}}"),
+            "4:22: error: unknown signal 'com.pos.zz' (did you mean 'com.pos.z'?)\n");
+  EXPECT_EQ(problems_of("golden: {tolerance: {com.pos.z: 2 N}}"),
+            "4:33: error: expected a length, got '2 N'\n");
+  EXPECT_EQ(problems_of("golden: {tolerance: {com.pos.z: 0 m}}"),
+            "4:33: error: expected a tolerance above zero, got '0 m'\n");
+  EXPECT_EQ(problems_of("golden: {rate: 50 Hz}"), "4:9: error: the key 'tolerance' is missing\n");
+  EXPECT_NE(problems_of("expect: [{end: fell}]").find("(did you mean 'fall'?)"), std::string::npos);
+  EXPECT_EQ(problems_of("expect: [{end: fall, after: 1 s}]"),
+            "4:29: error: 'after' has no meaning beside 'end'\n");
+  const ScenarioDescription scenario = load(
+      "scenario: 1\nbehavior: walk.yaml\nfor: 20 s\nexpect: [{end: [fall, fault]}]\n"
+      "golden: {file: old.csv, tolerance: {com.pos.z: 2 mm}, rate: 20 Hz}\n");
+  EXPECT_EQ(diagnostics_.to_string(), "");
+  EXPECT_EQ(scenario.expectations.at(0).ends, (std::vector<int>{2, 3}));
+  EXPECT_EQ(scenario.golden->path, path("old.csv"));
+  EXPECT_EQ(scenario.golden->rate, 20.0);
+  EXPECT_EQ(scenario.golden->signals.at(0).tolerance, 0.002);
+}
 TEST_F(ScenarioLoader, TheErrorsOfItsBehaviorAreShownAtTheirPlaces) {
   std::ofstream(folder_ / "walk.yaml") << kBehavior << "parameters: {lift_time: {value: 3 s}}\n";
   EXPECT_NE(problems_of("expect: [stepz > 1]").find("walk.yaml:3:"), std::string::npos);

@@ -1,0 +1,53 @@
+// What every run is put together from: world, backend, loop settings, log. For behaviors and
+// scenarios.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "apps/run_options.h"
+#include "engine/control_loop.h"
+#include "engine/log_writer.h"
+#include "lab/run.h"
+#include "lab/summary.h"
+#include "sim/mujoco_backend.h"
+
+namespace footfall::apps {
+
+// A mistake in the input: printed as it is, exit code 2; empty: printed already.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The backend with what only it can do.
+struct Backend {
+  std::unique_ptr<hal::Hardware> hardware;
+  sim::MujocoBackend* mujoco = nullptr;
+  std::string physics;
+};
+
+// A world by name or path; `beside`: a file in whose folder it is sought first; `place`: where it
+// is named. Prints what is wrong with it; throws InputError.
+sim::WorldDescription load_world(const std::string& name, const std::string& beside = {},
+                                 const std::string& place = {});
+Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
+                     const sim::WorldDescription& world);
+engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world);
+// Time, steps, pace, log rate, status line, counted allocations.
+lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop);
+// Set by Ctrl-C from now on.
+const std::atomic<bool>* stop_on_signals();
+// Creates the folder and the log in it, whose path goes to `id`; null with --no-log.
+std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
+                                            const behaviors::Behavior& behavior,
+                                            const sim::WorldDescription& world,
+                                            lab::RunIdentity& id);
+// Writes a small text file whole or not at all.
+void write_file(const std::string& path, const std::string& text);
+
+// `footfall run` of a scenario file; the exit code. Throws InputError.
+int run_scenario_file(RunOptions options);
+
+}  // namespace footfall::apps

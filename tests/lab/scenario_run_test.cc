@@ -1,0 +1,261 @@
+// Scenarios that run: scripts act when they say, expectations are judged as they say, on a robot of
+// double integrators whose states only time moves.
+#include "lab/scenario_run.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "hal/sensor_faults.h"
+#include "hal/stub_backend.h"
+#include "lab/scenario_loader.h"
+
+namespace footfall::lab {
+namespace {
+
+// 1500 Hz: a is active from tick 0, b from 150 (100 ms), c from 300, then a again.
+constexpr const char* kLaps = R"(behavior: 1
+robot: hume
+parameters:
+  lap: {value: 100 ms, range: [50 ms, 400 ms], live: true}
+  stiff: {value: 2}
+events: {go: "from outside", tapped: "from outside"}
+machine:
+  safe: limp
+  contacts: [right_foot, left_foot]
+  tasks: {rest: {type: joint_damping, gains: {kd: 20}}}
+  transitions: [{on: go, to: gone}]
+  states:
+    a: {after: $lap, to: b}
+    b: {after: $lap, to: c, on_exit: [{raise: lapped}]}
+    c:
+      transitions: [{when: "$stiff > 5", to: gone}]
+      after: $lap
+      to: a
+    gone: {transitions: [{on: tapped, to: a}]}
+    limp: {contacts: [], tasks: {rest: {type: joint_damping, gains: {kd: 5}}}}
+)";
+
+class ScenarioRunTest : public testing::Test {
+ protected:
+  ScenarioRunTest()
+      : folder_(std::filesystem::path(testing::TempDir()) /
+                ("footfall_scenario_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "laps.yaml") << kLaps;
+  }
+  ~ScenarioRunTest() override { std::filesystem::remove_all(folder_); }
+
+  // Runs a scenario of these lines for 0.6 s: 900 ticks.
+  ScenarioRun run(const std::string& lines, std::uint64_t seed = 1) {
+    std::ofstream(folder_ / "s.yaml") << "scenario: 1\nbehavior: laps.yaml\nfor: 600 ms\n" << lines;
+    core::Diagnostics diagnostics;
+    scenario_ = load_scenario((folder_ / "s.yaml").string(), {{FOOTFALL_SOURCE_DIR}}, diagnostics);
+    EXPECT_EQ(diagnostics.to_string(), "");
+    if (diagnostics.has_errors()) throw std::runtime_error("the scenario is wrong");
+    const behaviors::Behavior& behavior = *scenario_.behavior;
+    hal::StubSettings settings;
+    settings.joints = behavior.robot.joint_count();
+    settings.contacts = static_cast<int>(behavior.robot.contacts.size());
+    settings.period = behavior.robot.period_s();
+    settings.base = {0.0, 0.0, behavior.robot.standing_height};
+    for (const auto& joint : behavior.robot.joints) settings.start.push_back(joint.posture);
+    hal::StubBackend stub(settings);
+    hal::SensorFaults sensors(stub);
+    engine::ControlLoop loop(behavior, sensors, {});
+    ScenarioHooks hooks;
+    hooks.push = [&](const std::string& body, double force, double, double) {
+      acts_.push_back({loop.ticks(), body + " " + std::to_string(static_cast<int>(force))});
+      return true;
+    };
+    hooks.hold = [&](const std::string& body, bool held) {
+      acts_.push_back({loop.ticks(), body + (held ? " held" : " free")});
+    };
+    hooks.fault = [&](InjectedFault fault, bool on) {
+      acts_.push_back({loop.ticks(), on ? "fails" : "works"});
+      sensors.fail(
+          fault == InjectedFault::imu_dropout ? hal::SensorGroup::imu : hal::SensorGroup::mocap,
+          on);
+    };
+    return run_scenario(scenario_, seed, loop, hooks, {});
+  }
+  // The outcome of one expectation.
+  ExpectationOutcome judge(const std::string& expectation, const std::string& lines = "") {
+    return run(lines + "expect:\n  - " + expectation + "\n").outcome.expectations.at(0);
+  }
+
+  using Act = std::pair<std::int64_t, std::string>;
+  std::filesystem::path folder_;
+  ScenarioDescription scenario_;
+  std::vector<Act> acts_;
+};
+
+TEST_F(ScenarioRunTest, EntriesActAtTheirTimes) {
+  run("script:\n"
+      "  - {at: 200 ms, push: {body: torso, force: 5 N, for: 1 ms}}\n"
+      "  - {at: 300 ms, hold: torso, for: 20 ms}\n");
+  EXPECT_EQ(acts_, (std::vector<Act>{{300, "torso 5"}, {450, "torso held"}, {480, "torso free"}}));
+}
+// b is entered in tick 150 and lasts 150 ticks: half of it has passed before tick 225.
+TEST_F(ScenarioRunTest, APhaseIsAPartOfTheStatesDuration) {
+  run("script:\n"
+      "  - {at: {state: b, phase: 50 %}, push: {force: 1 N, for: 1 ms}}\n"
+      "  - {at: {state: c}, push: {force: 2 N, for: 1 ms}}\n");
+  EXPECT_EQ(acts_, (std::vector<Act>{{225, "torso 1"}, {301, "torso 2"}}));
+}
+// What an event of a tick brings about comes before the next one, each time.
+TEST_F(ScenarioRunTest, AnEntryOnAnEventActsEachTimeThatItIsRaised) {
+  run("script: [{on: lapped, push: {force: 1 N, for: 1 ms}}]\n");
+  EXPECT_EQ(acts_, (std::vector<Act>{{301, "torso 1"}, {751, "torso 1"}}));
+}
+TEST_F(ScenarioRunTest, EditsAndEventsGoThroughTheDoor) {
+  const ScenarioRun done =
+      run("script:\n"
+          "  - {at: 50 ms, edit: {lap: 200 ms}}\n"  // of b and what follows
+          "  - {at: 400 ms, raise: go}\n"
+          "  - {at: 500 ms, edit: {lap: 300 ms}, raise: tapped}\n"
+          "expect:\n"
+          "  - {that: in(b), between: [100 ms, 299 ms]}\n"
+          "  - {that: in(c), between: [300 ms, 399 ms]}\n"
+          "  - {that: in(gone), between: [400 ms, 499 ms]}\n"
+          "  - in(a)\n"
+          "  - $lap == 300 ms\n");
+  for (const ExpectationOutcome& e : done.outcome.expectations) EXPECT_TRUE(e.passed) << e.text;
+  EXPECT_TRUE(done.outcome.passed);
+}
+TEST_F(ScenarioRunTest, SetWritesWhatIsNotLive) {
+  EXPECT_TRUE(judge("in(gone)", "script: [{at: 100 ms, set: {stiff: 6}}]\n").passed);
+  EXPECT_FALSE(judge("in(gone)").passed);
+}
+TEST_F(ScenarioRunTest, AFaultOfASensorIsReportedAndEnds) {
+  const ScenarioRun done =
+      run("script: [{at: 100 ms, fault: imu.dropout, for: 10 ms}]\n"
+          "expect: [{that: in(limp), after: 100 ms, within: 1 ms}]\n");
+  EXPECT_TRUE(done.outcome.passed) << done.outcome.why;
+  EXPECT_EQ(acts_, (std::vector<Act>{{150, "fails"}, {165, "works"}}));
+  EXPECT_EQ(done.run.faults.of(core::Fault::imu_stale), 1);
+}
+
+TEST_F(ScenarioRunTest, ALoneConditionIsJudgedAtTheEnd) {
+  const ExpectationOutcome e = judge("time > 1 s");
+  EXPECT_FALSE(e.passed);
+  EXPECT_EQ(e.text, "time > 1 s");
+  EXPECT_EQ(e.place, (folder_ / "s.yaml").string() + ":5:5");
+  EXPECT_EQ(e.tick, 899);
+  EXPECT_EQ(e.state, "c");
+  EXPECT_EQ(e.why, "not so at the end of the run");
+  EXPECT_TRUE(judge("time > 599 ms").passed);
+}
+TEST_F(ScenarioRunTest, NeverNamesTheFirstTickInWhichItHeld) {
+  const ExpectationOutcome e = judge("{never: in(b)}");
+  EXPECT_FALSE(e.passed);
+  EXPECT_EQ(e.tick, 150);
+  EXPECT_DOUBLE_EQ(e.at.value(), 0.1);
+  EXPECT_EQ(e.state, "b");
+  EXPECT_EQ(judge("{never: in(b), after: 200 ms}").tick, 600);
+  EXPECT_TRUE(judge("{never: in(b), between: [200 ms, 399 ms]}").passed);
+}
+TEST_F(ScenarioRunTest, AConditionOverATimeMustHoldInEveryTickOfIt) {
+  EXPECT_TRUE(judge("{that: in(b), between: [100 ms, 199 ms]}").passed);
+  const ExpectationOutcome e = judge("{that: in(b), between: [100 ms, 250 ms]}");
+  EXPECT_FALSE(e.passed);
+  EXPECT_EQ(e.tick, 300);
+  EXPECT_EQ(e.state, "c");
+}
+TEST_F(ScenarioRunTest, WithinAsksForOneTick) {
+  EXPECT_TRUE(judge("{that: in(b), within: 100 ms}").passed);
+  const ExpectationOutcome e = judge("{that: in(b), within: 99 ms}");
+  EXPECT_FALSE(e.passed);
+  EXPECT_EQ(e.why, "it never became so");
+  EXPECT_TRUE(judge("{that: in(b), after: 200 ms, within: 200 ms}").passed);
+}
+// The clock's signal over ticks 150..300: 0.1 s to 0.2 s.
+TEST_F(ScenarioRunTest, ReductionsAreOfTheirTimeAlone) {
+  const std::string window = ", between: [100 ms, 200 ms]}";
+  const ExpectationOutcome max = judge("{that: max(steps) < 0" + window);
+  EXPECT_FALSE(max.passed);
+  EXPECT_EQ(max.value, "max steps = 0");
+  const ScenarioRun done =
+      run("script: [{at: 150 ms, raise: go}]\nexpect:\n"
+          "  - {that: max(contact.left_foot) == 1" +
+          window +
+          "\n"
+          "  - {that: mean(contact.left_foot) == 1" +
+          window +
+          "\n"
+          "  - {that: rms(contact.left_foot) == 1" +
+          window +
+          "\n"
+          "  - {that: count(contact.left_foot) == 1" +
+          window + "\n");
+  for (const ExpectationOutcome& e : done.outcome.expectations) EXPECT_TRUE(e.passed) << e.value;
+}
+TEST_F(ScenarioRunTest, ASequenceIsOfEntriesInOrderAndMayBeTimed) {
+  EXPECT_TRUE(judge("{sequence: [a, b, c]}").passed);
+  EXPECT_TRUE(judge("{sequence: [a, c, a], within: 300 ms}").passed);
+  const ExpectationOutcome slow = judge("{sequence: [a, c], within: 100 ms}");
+  EXPECT_FALSE(slow.passed);
+  EXPECT_EQ(slow.why, "the fastest took 0.2 s");
+  const ExpectationOutcome none = judge("{sequence: [b, gone]}");
+  EXPECT_EQ(none.why, "'gone' was not entered after 'b'");
+  EXPECT_EQ(none.tick, 600);                        // b, for the second time
+  EXPECT_TRUE(judge("{sequence: [c, c]}").passed);  // in ticks 300 and 750
+  EXPECT_FALSE(judge("{sequence: [c, c, c]}").passed);
+}
+TEST_F(ScenarioRunTest, ARunThatEndsEarlyFailsUnlessThatIsExpected) {
+  const std::string stop = "script: [{at: 100 ms, fault: mocap.dropout}]\n";
+  EXPECT_TRUE(run(stop).outcome.passed);  // it goes on without
+  EXPECT_TRUE(judge("{end: time}").passed);
+  const ExpectationOutcome e = judge("{end: [fall, fault]}");
+  EXPECT_FALSE(e.passed);
+  EXPECT_EQ(e.why, "the run ended by time at 0.600 s");
+}
+
+TEST_F(ScenarioRunTest, CoverageSaysWhatWasReached) {
+  const ScenarioRun done = run("script: [{at: 50 ms, raise: tapped}]\n");
+  const auto json = outcome_json(scenario_, done.outcome, nullptr);
+  const auto& states = json["coverage"]["states"];
+  const auto entered = [&](const char* path) {
+    return std::find(states.begin(), states.end(), path) != states.end();
+  };
+  EXPECT_TRUE(entered("a") && entered("b") && entered("c"));
+  EXPECT_FALSE(entered("gone") || entered("limp"));
+  int taken = 0;
+  for (const auto& t : json["coverage"]["transitions"]) taken += t["taken"].get<bool>() ? 1 : 0;
+  EXPECT_EQ(taken, 3);
+  ASSERT_EQ(json["coverage"]["guards"].size(), 1U);
+  EXPECT_FALSE(json["coverage"]["guards"][0]["true"].get<bool>());
+  EXPECT_TRUE(json["coverage"]["guards"][0]["false"].get<bool>());
+  EXPECT_EQ(json["coverage"]["guards"][0]["line"], 16);
+  EXPECT_EQ(json["seed"], 1);
+  EXPECT_EQ(json["passed"], true);
+}
+
+TEST_F(ScenarioRunTest, AGoldenTraceIsWrittenReadAndFollowed) {
+  const std::string golden =
+      "golden: {tolerance: {joint.left_knee.position: 0.001 rad}, rate: 10 Hz}\n";
+  const ScenarioRun first = run(golden);
+  EXPECT_FALSE(first.outcome.passed);
+  EXPECT_NE(first.outcome.why.find("no golden trace yet"), std::string::npos);
+  const std::string path = (folder_ / "s.golden.csv").string();
+  EXPECT_EQ(scenario_.golden->path, path);
+  GoldenTrace trace = first.trace;
+  ASSERT_EQ(trace.rows.size(), 6U);  // 0, 0.1, ... 0.5 s
+  EXPECT_EQ(trace.rows[1].state, "b");
+  write_golden(path, *scenario_.golden, trace);
+  EXPECT_TRUE(run(golden).outcome.passed);
+  trace.rows[3].values[0] += 0.002;
+  write_golden(path, *scenario_.golden, trace);
+  const std::string why = run(golden).outcome.why;
+  EXPECT_NE(why.find("joint.left_knee.position at 0.3000 s in a: got "), std::string::npos) << why;
+  EXPECT_TRUE(run(golden, 2).outcome.passed);  // another seed is not compared
+  std::ofstream(path) << "time,state\n";
+  EXPECT_NE(run(golden).outcome.why.find(":1: error: expected the head"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footfall::lab
