@@ -380,27 +380,5 @@ TEST_F(Mujoco, ARobotFileThatDoesNotFitItsModelIsRefused) {
   EXPECT_NE(message().find("error: "), std::string::npos);
 }
 
-// Without any torque the robot would fold up. Held, its weight moves it by g/w^2 = 4 mm with the 50
-// rad/s of the hands, and no further while it settles, since they are critically damped; its legs,
-// which swing freely below, are a part of the mass that they are made for.
-TEST_F(Mujoco, AHeldBodyStaysWhereItIsUntilItIsLetGo) {
-  auto backend = started();
-  backend.start();
-  const int torso = backend.find_body(robot.floating_base);
-  const Vector3 before = {backend.data()->qpos[0], backend.data()->qpos[1],
-                          backend.data()->qpos[2]};
-  ASSERT_TRUE(backend.hold(torso, true));
-  for (int k = 0; k < 1500; ++k) {
-    backend.write({});
-    const double* p = backend.data()->qpos;
-    ASSERT_LT(std::hypot(p[0] - before[0], p[1] - before[1], p[2] - before[2]), 0.016) << k;
-    ASSERT_GT(std::abs(p[3]), std::cos(0.1)) << k;  // half the angle: turned by less than 0.2 rad
-  }
-  ASSERT_TRUE(backend.hold(torso, false));
-  EXPECT_FALSE(backend.hold(torso, false));
-  for (int k = 0; k < 1500; ++k) backend.write({});
-  EXPECT_LT(backend.data()->qpos[2], before[2] - 0.1);
-}
-
 }  // namespace
 }  // namespace footfall::tests
