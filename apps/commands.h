@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ class App;
 }
 
 namespace footfall::apps {
+
+// A mistake in the input: printed as it is, exit code 2; empty: printed already.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 inline constexpr int kGood = 0;
 inline constexpr int kRobotFailed = 1;    // the robot fell, or a test failed

@@ -16,11 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A mistake in what was typed.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 struct NewOptions {
   std::string kind, name, from, base, robot;
 };

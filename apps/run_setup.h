@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "apps/commands.h"
 #include "apps/run_options.h"
 #include "engine/control_loop.h"
 #include "engine/log_writer.h"
@@ -15,11 +16,6 @@
 #include "sim/mujoco_backend.h"
 
 namespace footfall::apps {
-
-// A mistake in the input: printed as it is, exit code 2; empty: printed already.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // The backend with what only it can do.
 struct Backend {

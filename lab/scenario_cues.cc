@@ -155,7 +155,11 @@ void ScenarioCues::submit(const ScriptEntry& entry, const std::vector<NewValues>
                           engine::EditSource source, RunLog& log) {
   engine::EditBatch batch;
   batch.source = source;
-  for (const NewValues& value : values) batch.values.push_back({value.parameter, -1, value.values});
+  for (const NewValues& value : values) {
+    const int size = loop_.behavior().parameters[at(value.parameter)].size;
+    const bool one = value.values.size() == 1 && size > 1;
+    batch.values.push_back({value.parameter, one ? value.first : -1, value.values});
+  }
   if (source == engine::EditSource::scenario) {
     batch.over = entry.over;
     if (entry.raise >= 0) batch.events.push_back(entry.raise);
