@@ -178,8 +178,9 @@ class Scanner {
     next_line();
     const std::string header = tokens_[block].text;
     const std::size_t digit = header.find_first_of("123456789");
-    std::size_t indent =
-        digit == std::string::npos ? kNowhere : parent + static_cast<std::size_t>(header[digit] - '0');
+    std::size_t indent = digit == std::string::npos
+                             ? kNowhere
+                             : parent + static_cast<std::size_t>(header[digit] - '0');
     std::vector<std::string>& lines = tokens_[block].lines;
     while (at_ < in_.size()) {
       const std::size_t stop = std::min(in_.find('\n', at_), in_.size());

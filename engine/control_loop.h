@@ -141,7 +141,7 @@ class ControlLoop {
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
   std::array<FaultPlace, core::kFaultCount> last_place_{}, worst_place_{};
   core::Fault ended_by_ = core::Fault::count;
-  bool fresh_ = true, was_fresh_ = true;          // new sensor data in this tick, in the previous
+  bool fresh_ = true, was_fresh_ = true;  // new sensor data in this tick, in the previous
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;
 };
