@@ -96,6 +96,7 @@ struct GoldenSpec {
 
 struct ScenarioDescription {
   std::string name, doc, path;
+  std::vector<std::string> labels;
   std::string behavior_name, behavior_path;
   std::string robot;           // name or path as written; empty: the behavior's
   std::string world = "flat";  // name or path as written

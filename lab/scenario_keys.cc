@@ -13,6 +13,7 @@ constexpr KeySpec kScenarioRows[] = {
         "`NAME: off` removes, `KEY+:` appends to a list"),
     key("name", name_of("a scenario"), "its name in reports").otherwise("the file's name"),
     key("doc", text_of("a text"), "what it shows, in a line"),
+    key("labels", list(name_of("a label")), "words by which `footfall test` picks: `quick`"),
     key("behavior", text_of("a file beside this one, or a name in the library"), "what runs")
         .required(),
     key("robot", text_of("a name or path"), "on which robot").otherwise("the behavior's"),

@@ -165,6 +165,14 @@ void read_seeds(ScenarioContext& context, const YamlNode& node) {
   }
 }
 
+void read_labels(ScenarioContext& context, const YamlNode& node) {
+  if (!core::expect_sequence(node, "a list of labels", context.diagnostics)) return;
+  for (const YamlNode& item : node.items) {
+    const auto label = core::read_name(item, context.diagnostics, "a label");
+    if (label) context.scenario.labels.push_back(*label);
+  }
+}
+
 void read_head(ScenarioContext& context, const YamlNode& root) {
   ScenarioDescription& scenario = context.scenario;
   core::Diagnostics& diagnostics = context.diagnostics;
@@ -173,6 +181,7 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
     scenario.name = core::read_name(*node, diagnostics, "the scenario's name").value_or("");
   }
   if (const YamlNode* node = root.find("doc")) scenario.doc = node->scalar;
+  if (const YamlNode* node = root.find("labels")) read_labels(context, *node);
   if (const YamlNode* node = root.find("world")) {
     scenario.world = core::read_text(*node, diagnostics, "the name of a world").value_or("");
     scenario.world_mark = node->mark;
