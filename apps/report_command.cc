@@ -5,12 +5,15 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
 #include "apps/report_film.h"
+#include "core/units.h"
 #include "lab/log_reader.h"
+#include "lab/log_window.h"
 #include "lab/report.h"
 
 namespace footfall::apps {
@@ -28,13 +31,38 @@ std::filesystem::path log_path(const std::string& argument) {
   return std::filesystem::is_directory(path) ? path / "log.mcap" : path;
 }
 
+// A time as an option gives it. Throws std::runtime_error.
+double time_of(const char* option, const std::string& text, double otherwise) {
+  if (text.empty()) return otherwise;
+  const auto quantity = core::parse_quantity(text);
+  if (!quantity || !(quantity->bare || quantity->dimension == core::kTime)) {
+    throw std::runtime_error(std::string(option) + ": expected a time such as 12.3s, got '" + text +
+                             "'");
+  }
+  return quantity->value;
+}
+
+// The log, or the part of it that is asked for.
+lab::Log read_part(const std::string& path, const ReportArguments& arguments) {
+  constexpr double kEver = std::numeric_limits<double>::infinity();
+  const double from = time_of("--from", arguments.from, -kEver);
+  const double to = time_of("--to", arguments.to, kEver);
+  const lab::Log log = lab::read_log(path);
+  if (arguments.from.empty() && arguments.to.empty()) return log;
+  lab::Log part = lab::log_window(log, from, to);
+  if (part.rows() == 0) {
+    throw std::runtime_error("--from, --to: '" + path + "' has nothing between these times");
+  }
+  return part;
+}
+
 }  // namespace
 
 int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
   const std::filesystem::path path = log_path(arguments.log);
   int exit_code = 0;
   try {
-    const lab::Log log = lab::read_log(path.string());
+    const lab::Log log = read_part(path.string(), arguments);
     lab::ReportOptions options;
     options.summary_json = text_beside(path, "summary.json");
     options.timing_json = text_beside(path, "timing.json");
@@ -79,6 +107,8 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   command->add_option("-o,--output", arguments->out,
                       "the page (default: report.html beside the log)");
+  command->add_option("--from", arguments->from, "only from this time in the run, e.g. 12.3s");
+  command->add_option("--to", arguments->to, "only up to this time");
   command->add_option("--strip", arguments->strip, "write the film strip as PNG, too");
   command->add_option("--film", arguments->film, "write the run as MP4 (needs ffmpeg)");
   command->add_flag("--no-strip", arguments->no_strip, "a page without pictures of the robot");

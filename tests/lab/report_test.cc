@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "lab/log_window.h"
 #include "lab/report_data.h"
 #include "lab/report_plot.h"
 
@@ -106,6 +107,17 @@ TEST_F(Report, ThePageHasEverySectionInBothWaysOfDrawing) {
     }
     EXPECT_EQ(page.find("{{"), page.find("{{", page.find("<script>"))) << "a place was not filled";
   }
+}
+
+TEST_F(Report, AWindowHasTheRowsAndEventsOfItsTimeOnly) {
+  const Log part = log_window(log_, 0.6, 0.9);
+  ASSERT_GT(part.rows(), 0U);
+  EXPECT_GE(part.time.front(), 0.6);
+  EXPECT_LE(part.time.back(), 0.9);
+  for (const auto& column : part.column) EXPECT_EQ(column.size(), part.rows());
+  ASSERT_EQ(part.events.size(), 1U);
+  EXPECT_EQ(part.events[0].name, "fault.fall");
+  EXPECT_EQ(log_window(log_, 1e6, 2e6).rows(), 0U);
 }
 
 TEST_F(Report, ThePageLoadsNothing) {
