@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
 #include "behaviors/physics_check.h"
 #include "lab/scenario_loader.h"
+#include "lab/suite_files.h"
 #include "model/control_model.h"
 #include "sim/world_description.h"
 
@@ -102,22 +102,6 @@ constexpr Kind kKinds[] = {
     {"scenario", check_scenario},
 };
 
-// The first key of the file, or of the base that it begins with; empty if it cannot be read. A word
-// at the start of a line is enough: a second parse would double the time that a large file takes.
-std::string first_key(const std::string& path) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(':');
-    const std::string key = line.substr(0, colon);
-    if (colon == std::string::npos || !core::is_name(key)) continue;
-    if (key != "base") return key;
-    break;
-  }
-  core::Diagnostics ignored;
-  const core::YamlNode root = core::load_yaml_with_base(path, ignored);
-  return root.is_map() && !root.entries.empty() ? root.entries.front().key : std::string();
-}
-
 void check_file(const std::string& file, const CheckOptions& options,
                 core::Diagnostics& diagnostics) {
   if (file == "-") {
@@ -128,7 +112,7 @@ void check_file(const std::string& file, const CheckOptions& options,
     return;
   }
   const std::string path = find_behavior_file(file);
-  const std::string key = first_key(path);
+  const std::string key = lab::first_key(path);
   const auto kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return key == k.key; });
   (kind == std::end(kKinds) ? check_behavior : kind->check)(path, diagnostics);
 }

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   footfall::apps::add_run_command(app, exit_code);
+  footfall::apps::add_test_command(app, exit_code);
   footfall::apps::add_check_command(app, exit_code);
   footfall::apps::add_trace_command(app, exit_code);
   footfall::apps::add_signals_command(app, exit_code);
