@@ -14,6 +14,7 @@
 #include "apps/commands.h"
 #include "apps/output_file.h"
 #include "core/units.h"
+#include "lab/bless.h"
 #include "lab/suite_files.h"
 #include "lab/suite_run.h"
 
@@ -35,6 +36,7 @@ struct TestOptions {
   std::string junit, json, coverage, filter, shard, timeout, seeds, program;
   std::string out = "out/test";
   bool quick = false, rerun_failed = false, keep = false, no_report = false;
+  bool bless = false, yes = false;
 };
 
 // A mistake in the arguments: one line, exit code 2.
@@ -233,15 +235,57 @@ lab::SuiteSettings settings_of(const TestOptions& options) {
   settings.out = options.out;
   settings.jobs = options.jobs > 0 ? options.jobs : lab::processor_count();
   settings.timeout = read_timeout(options.timeout);
-  settings.keep = options.keep;
+  settings.keep = options.keep || options.bless;
   settings.stop = &g_stop;
   return settings;
+}
+
+// Only what has a golden trace, and of that the seed that the trace is of.
+void keep_golden(std::vector<lab::SuiteScenario>& scenarios) {
+  std::erase_if(scenarios, [](const lab::SuiteScenario& s) { return s.golden.empty(); });
+  for (lab::SuiteScenario& scenario : scenarios) scenario.seeds.resize(1);
+  if (scenarios.empty()) throw InputError("--bless: error: none of them has a golden trace");
+}
+
+bool agreed(std::size_t count) {
+  fmt::print("Make {} trace{} golden? [y/N] ", count, count == 1 ? "" : "s");
+  std::fflush(stdout);
+  const int answer = std::getchar();
+  return answer == 'y' || answer == 'Y';
+}
+
+// Shows what would change, asks, writes.
+int bless_traces(const TestOptions& options, const Suite& suite) {
+  std::vector<lab::Blessing> list = lab::blessings(suite);
+  bool refused = suite.interrupted;
+  for (const lab::Blessing& blessing : list) {
+    fmt::print("\n{}  ({})\n{}", blessing.scenario, blessing.to, blessing.text);
+    if (blessing.refused.empty()) continue;
+    fmt::print("  not blessed: {}\n", blessing.refused);
+    refused = true;
+  }
+  std::erase_if(list, [](const lab::Blessing& b) { return !b.refused.empty(); });
+  if (suite.interrupted) return kRobotFailed;
+  if (list.empty()) {
+    fmt::print("\nno golden trace changes\n");
+    return refused ? kRobotFailed : kGood;
+  }
+  if (!options.yes && (::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0)) {
+    throw InputError("--bless: error: nobody can be asked without a terminal: give --yes");
+  }
+  if (!options.yes && !agreed(list.size())) return kRobotFailed;
+  for (const lab::Blessing& blessing : list) {
+    lab::bless(blessing);
+    fmt::print("  blessed      {}\n", blessing.to);
+  }
+  return refused ? kRobotFailed : kGood;
 }
 
 int test(const TestOptions& options) {
   lab::SuiteSettings settings = settings_of(options);
   Suite suite;
   suite.scenarios = choose(options);
+  if (options.bless) keep_golden(suite.scenarios);
   std::FILE* stream = options.json == "-" ? stderr : stdout;
   if (suite.scenarios.empty()) {
     fmt::print(stream, "nothing to run: {}\n",
@@ -258,6 +302,7 @@ int test(const TestOptions& options) {
   };
   lab::run_suite(suite, settings);
   status.clear();
+  if (options.bless) return bless_traces(options, suite);
   if (!options.no_report) lab::write_failure_reports(suite, settings, kReportsOfAScenario);
   print_failures(stream, suite);
   print_total(stream, suite);
@@ -274,7 +319,7 @@ void add_options(CLI::App& command, TestOptions& o) {
       ->check(CLI::PositiveNumber);
   command.add_option("--filter", o.filter,
                      "Only scenarios whose name or path matches, e.g. 'push*'");
-  command.add_option("--label", o.labels, "Only scenarios with one of these labels");
+  command.add_option("--label,--labels", o.labels, "Only scenarios with one of these labels");
   command.add_flag("--quick", o.quick, "Only scenarios with the label `quick`");
   command.add_option("--shard", o.shard, "I/N: the I-th of N parts of about equal length");
   command.add_option("--seeds", o.seeds, "A..B: these seeds instead of the scenarios' own");
@@ -284,6 +329,9 @@ void add_options(CLI::App& command, TestOptions& o) {
   command.add_flag("--rerun-failed", o.rerun_failed, "What failed in the last session of --out");
   command.add_option("--out", o.out, "Folder for logs of failures and the session's state")
       ->capture_default_str();
+  command.add_flag("--bless", o.bless,
+                   "Makes the traces of these runs the golden ones: shows what changes, then asks");
+  command.add_flag("--yes", o.yes, "With --bless: does not ask");
   command.add_flag("--keep", o.keep, "Keeps the logs of runs that passed, too");
   command.add_flag("--no-report", o.no_report, "No report pages of failures");
   command.add_option("--junit", o.junit, "Writes the result as JUnit XML");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace footfall::lab {
@@ -11,9 +12,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string place_of(core::Mark mark, const core::Diagnostics& files) {
-  if (mark.file < 0 || mark.file >= files.file_count()) return "";
-  return fmt::format("{}:{}", files.file(mark.file), mark.line);
+std::string place_of(core::Mark mark, const std::vector<std::string>& files) {
+  const auto index = static_cast<std::size_t>(mark.file);
+  if (mark.file < 0 || index >= files.size()) return "";
+  const auto file = std::filesystem::path(files[index]).lexically_normal();
+  return fmt::format("{}:{}", file.string(), mark.line);
 }
 
 // A count or a truth value.
@@ -50,7 +53,7 @@ void sum(CoverageFigure& total, CoverageFigure part) {
 }  // namespace
 
 CoverageMap coverage_map(const behaviors::Chart& chart, const std::string& path,
-                         const core::Diagnostics& files) {
+                         const std::vector<std::string>& files) {
   CoverageMap map;
   map.behavior = path;
   for (const behaviors::StateInfo& state : chart.states) {

@@ -25,8 +25,9 @@ struct CoverageMap {
   std::string behavior;  // path of its file
   std::vector<Item> states, transitions;
 };
+// files: by core::Mark::file.
 CoverageMap coverage_map(const behaviors::Chart& chart, const std::string& path,
-                         const core::Diagnostics& files);
+                         const std::vector<std::string>& files);
 
 struct CoverageFigure {
   std::size_t reached = 0, of = 0;

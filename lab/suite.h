@@ -28,7 +28,8 @@ struct SuiteScenario {
   std::vector<std::uint64_t> seeds;
   double duration = 0.0;  // s of simulated time
   std::vector<SuiteExpectation> expectations;
-  std::string errors;                      // of the file; if there are any nothing is run
+  std::string golden;  // path of the trace that the first seed must follow; empty: none
+  std::string errors;  // of the file; if there are any nothing is run
   std::shared_ptr<const CoverageMap> map;  // of its behavior
 };
 
@@ -58,6 +59,7 @@ struct SuiteRun {
   std::size_t scenario = 0;  // into Suite::scenarios
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::stopped;
+  std::string end;                         // how the run ended, by its own words
   std::string why;                         // of a failure that is not an expectation's
   std::string error_tail;                  // the last lines of stderr
   std::vector<Observation> observations;   // one for each expectation; none if it gave no result

@@ -7,12 +7,10 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <numeric>
 #include <set>
 #include <stdexcept>
 
-#include "behaviors/loader.h"
 #include "core/glob.h"
 #include "core/value_reader.h"
 #include "core/yaml.h"
@@ -39,7 +37,7 @@ std::string window_text(const Expectation& expectation) {
 
 std::string expectation_text(const ScenarioDescription& scenario, const Expectation& expectation) {
   std::string text = expectation.text;
-  if (expectation.kind == Expectation::Kind::never) text = "never " + text;
+  if (expectation.kind == Expectation::Kind::never) text = "never: " + text;
   if (expectation.kind == Expectation::Kind::sequence && scenario.behavior != nullptr) {
     text = "sequence ";
     for (const int state : expectation.states) {
@@ -50,27 +48,7 @@ std::string expectation_text(const ScenarioDescription& scenario, const Expectat
   return text + window_text(expectation);
 }
 
-using Maps = std::map<std::pair<std::string, std::string>, std::shared_ptr<const CoverageMap>>;
-
-// Of the scenario's behavior; read once more, for the names of its files.
-std::shared_ptr<const CoverageMap> map_of(const ScenarioDescription& scenario,
-                                          const std::vector<std::string>& search, Maps& known) {
-  auto& map = known[{scenario.behavior_path, scenario.robot}];
-  if (map != nullptr) return map;
-  core::Diagnostics files;
-  behaviors::LoadOptions options;
-  options.search = search;
-  options.robot = scenario.behavior->has_robot ? scenario.behavior->robot.path : "";
-  const auto behavior = behaviors::load_behavior(scenario.behavior_path, options, files);
-  const std::string path = fs::path(scenario.behavior_path).lexically_normal().string();
-  if (behavior != nullptr) {
-    map = std::make_shared<CoverageMap>(coverage_map(*behavior, path, files));
-  }
-  return map;
-}
-
-SuiteScenario load_one(const std::string& path, const std::vector<std::string>& search,
-                       Maps& maps) {
+SuiteScenario load_one(const std::string& path, const std::vector<std::string>& search) {
   SuiteScenario out;
   out.path = path;
   core::Diagnostics diagnostics;
@@ -90,7 +68,10 @@ SuiteScenario load_one(const std::string& path, const std::vector<std::string>& 
                                 fmt::format("{}:{}:{}", file, mark.line, mark.column),
                                 expectation.part});
   }
-  out.map = map_of(scenario, search, maps);
+  const std::string behavior = fs::path(scenario.behavior_path).lexically_normal().string();
+  out.map = std::make_shared<CoverageMap>(
+      coverage_map(*scenario.behavior, behavior, scenario.behavior_files));
+  if (scenario.golden) out.golden = scenario.golden->path;
   return out;
 }
 
@@ -169,8 +150,7 @@ std::vector<SuiteScenario> load_suite(const std::vector<std::string>& files,
                                       const SuiteSelection& selection,
                                       const std::vector<std::string>& search) {
   std::vector<SuiteScenario> scenarios;
-  Maps maps;
-  for (const std::string& file : files) scenarios.push_back(load_one(file, search, maps));
+  for (const std::string& file : files) scenarios.push_back(load_one(file, search));
   make_names_unique(scenarios);
   std::erase_if(scenarios, [&](const SuiteScenario& s) { return !is_selected(s, selection); });
   if (!selection.seeds.empty()) {

@@ -79,6 +79,7 @@ std::string misfit(const Json& object, const SuiteScenario& scenario, const Suit
 }
 
 void read_object(const Json& object, int exit_code, SuiteRun& run) {
+  run.end = text_of(object, "end");
   bool all = true;
   for (const Json& item : object["expectations"]) {
     const auto observation = read_observation(item);
@@ -97,9 +98,8 @@ void read_object(const Json& object, int exit_code, SuiteRun& run) {
     run.verdict = Verdict::bad_output;
     run.why = fmt::format("it says that it passed, with exit code {}", exit_code);
   } else if (!passed && all) {
-    const std::string end = text_of(object, "end");
     const std::string why = text_of(object, "why");
-    run.why = !why.empty() ? why : "the run ended by " + (end.empty() ? "failing" : end);
+    run.why = !why.empty() ? why : "the run ended by " + (run.end.empty() ? "failing" : run.end);
   }
 }
 

@@ -43,6 +43,7 @@ list='' item=$first
 while [ -n "$seen" ]; do
   list="$list${list:+, }{$item}" item='"passed": true' seen=${seen#?}
 done
+printf 'time,state,com.pos.z\n0.0,a,0.0\n0.5,a,%s\n' "$act" | sed 's/pass/0.5/; s/fail/0.5/; s/slow/0.7/' >"$folder/golden.csv"
 echo "chatter before the result"
 cat <<END
 {"seed": $seed, "passed": $passed, "expectations": [$list], "end": "$end", "coverage": {"states": ["machine", "a"], "transitions": [{"index": 0, "taken": $([ $((seed % 2)) = 1 ] && echo true || echo false)}], "guards": [{"index": 1, "true": false, "false": true}]}}

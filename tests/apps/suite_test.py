@@ -23,6 +23,14 @@ machine:
 """
 
 
+STAND = """behavior: 1
+robot: hume
+machine:
+  states:
+    a: {contacts: [right_foot, left_foot], tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}}
+"""
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -31,11 +39,11 @@ class Case(unittest.TestCase):
         (self.folder / "tests/regression").mkdir(parents=True)
         (self.folder / "tests/regression/chart.yaml").write_text(CHART)
 
-    def scenario(self, name, doc, seeds="[1]", labels="[]", expect=("time >= 0 s",)):
+    def scenario(self, name, doc, seeds="[1]", labels="[]", expect=("time >= 0 s",), more=""):
         lines = "".join(f"  - {e}\n" for e in expect)
         path = self.folder / f"tests/regression/{name}.yaml"
         path.write_text(f'scenario: 1\ndoc: "{doc}"\nbehavior: chart.yaml\nseeds: {seeds}\nlabels: {labels}\n'
-                        f"for: 1 s\nexpect:\n{lines}")
+                        f"for: 1 s\nexpect:\n{lines}{more}")
         return str(path.relative_to(self.folder))
 
     def command(self, *arguments):
@@ -160,6 +168,45 @@ class Selection(Case):
         self.assertEqual(result.returncode, 2)
         self.assertIn("wrong.yaml:2:1: error:", result.stdout)
         self.assertEqual(len(self.session["scenarios"]), 4)
+
+
+class Bless(Case):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "tests/regression/stand.yaml").write_text(STAND)
+        self.golden = self.folder / "tests/regression/traced.golden.csv"
+        self.trace("pass")
+
+    def trace(self, doc):
+        path = self.folder / self.scenario("traced", doc, "1..3", more="golden: {tolerance: {com.pos.z: 1 mm}}\n")
+        path.write_text(path.read_text().replace("chart.yaml", "stand.yaml"))
+
+    def test_a_trace_becomes_golden_only_if_that_is_said(self):
+        refused = self.footfall("--bless")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("a new trace: 1 signals, 2 rows", refused.stdout)
+        self.assertFalse(self.golden.exists())
+        self.assertEqual(self.footfall("--bless", "--yes").returncode, 0)
+        self.assertEqual(self.golden.read_text(), "time,state,com.pos.z\n0.0,a,0.0\n0.5,a,0.5\n")
+        self.assertIn("no golden trace changes", self.footfall("--bless").stdout)
+
+    def test_the_largest_difference_is_shown_and_when(self):
+        self.footfall("--bless", "--yes")
+        self.trace("slow")
+        changed = self.footfall("--bless")
+        self.assertIn("differs by up to 0.2, at 0.500 s", changed.stdout)
+        self.assertIn("0.5,a,0.5", self.golden.read_text())
+
+    def test_a_run_that_failed_is_not_blessed(self):
+        self.trace("fail")
+        result = self.footfall("--bless", "--yes")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("not blessed: an expectation did not hold", result.stdout)
+        self.assertFalse(self.golden.exists())
+
+    def test_without_any_golden_trace_it_is_bad_input(self):
+        self.scenario("traced", "pass")
+        self.assertEqual(self.footfall("--bless").returncode, 2)
 
 
 class Formats(Case):
