@@ -4,15 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
+#include "apps/run_setup.h"
 #include "core/units.h"
 #include "lab/bless.h"
 #include "lab/suite_files.h"
@@ -26,10 +25,6 @@ using lab::Suite;
 
 constexpr std::size_t kReportsOfAScenario = 2;
 
-std::atomic<bool> g_stop{false};
-
-void on_interrupt(int) { g_stop.store(true); }
-
 struct TestOptions {
   std::vector<std::string> paths, labels;
   int jobs = 0;
@@ -37,11 +32,6 @@ struct TestOptions {
   std::string out = "out/test";
   bool quick = false, rerun_failed = false, keep = false, no_report = false;
   bool bless = false, yes = false;
-};
-
-// A mistake in the arguments: one line, exit code 2.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
 };
 
 // The places where a project keeps its scenarios.
@@ -236,7 +226,6 @@ lab::SuiteSettings settings_of(const TestOptions& options) {
   settings.jobs = options.jobs > 0 ? options.jobs : lab::processor_count();
   settings.timeout = read_timeout(options.timeout);
   settings.keep = options.keep || options.bless;
-  settings.stop = &g_stop;
   return settings;
 }
 
@@ -292,8 +281,7 @@ int test(const TestOptions& options) {
                options.rerun_failed ? "nothing failed in the last session" : "an empty shard");
     return kGood;
   }
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  settings.stop = stop_on_signals();
   const StatusLine status;
   settings.progress = [&status](const lab::SuiteProgress& progress) { status.show(progress); };
   settings.scenario_done = [&](const Suite& all, std::size_t s) {

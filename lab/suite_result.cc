@@ -10,7 +10,7 @@
 namespace footfall::lab {
 namespace {
 
-using Json = nlohmann::json;
+using Parsed = nlohmann::json;
 
 constexpr std::size_t kTailLines = 12;
 
@@ -26,16 +26,16 @@ std::string last_lines(const std::string& text, std::size_t lines) {
 }
 
 // The object on the last line that is not empty.
-Json last_object(const std::string& out) {
+Parsed last_object(const std::string& out) {
   std::size_t end = out.find_last_not_of(" \n\r\t");
   if (end == std::string::npos) return {};
   const std::size_t begin = out.rfind('\n', end);
   const std::size_t first = begin == std::string::npos ? 0 : begin + 1;
-  Json object = Json::parse(out.substr(first, end + 1 - first), nullptr, false);
-  return object.is_object() ? object : Json();
+  Parsed object = Parsed::parse(out.substr(first, end + 1 - first), nullptr, false);
+  return object.is_object() ? object : Parsed();
 }
 
-std::string text_of(const Json& map, const char* key) {
+std::string text_of(const Parsed& map, const char* key) {
   const auto found = map.find(key);
   if (found == map.end() || found->is_null()) return "";
   if (found->is_string()) return printable(found->get<std::string>());
@@ -43,7 +43,7 @@ std::string text_of(const Json& map, const char* key) {
   return found->dump();
 }
 
-std::optional<double> number_of(const Json& map, const char* key) {
+std::optional<double> number_of(const Parsed& map, const char* key) {
   const auto found = map.find(key);
   if (found == map.end() || !found->is_number()) return std::nullopt;
   const double value = found->get<double>();
@@ -51,7 +51,7 @@ std::optional<double> number_of(const Json& map, const char* key) {
 }
 
 // Nothing if it is not an observation.
-std::optional<Observation> read_observation(const Json& item) {
+std::optional<Observation> read_observation(const Parsed& item) {
   if (!item.is_object() || !item.contains("passed") || !item["passed"].is_boolean()) return {};
   Observation out;
   out.passed = item["passed"].get<bool>();
@@ -64,7 +64,7 @@ std::optional<Observation> read_observation(const Json& item) {
 }
 
 // Why the object is not the result of this run; empty if it is.
-std::string misfit(const Json& object, const SuiteScenario& scenario, const SuiteRun& run) {
+std::string misfit(const Parsed& object, const SuiteScenario& scenario, const SuiteRun& run) {
   if (object.is_null()) return "its output ends without a result";
   if (!object.contains("passed") || !object["passed"].is_boolean())
     return "its result has no verdict";
@@ -78,10 +78,10 @@ std::string misfit(const Json& object, const SuiteScenario& scenario, const Suit
   return "";
 }
 
-void read_object(const Json& object, int exit_code, SuiteRun& run) {
+void read_object(const Parsed& object, int exit_code, SuiteRun& run) {
   run.end = text_of(object, "end");
   bool all = true;
-  for (const Json& item : object["expectations"]) {
+  for (const Parsed& item : object["expectations"]) {
     const auto observation = read_observation(item);
     if (!observation) {
       run.observations.clear();
@@ -155,7 +155,7 @@ void read_result(const ProcessResult& result, const SuiteScenario& scenario, Sui
                                           : Verdict::bad_output;
     return;
   }
-  const Json object = last_object(result.out);
+  const Parsed object = last_object(result.out);
   run.why = misfit(object, scenario, run);
   if (!run.why.empty()) {
     run.verdict = Verdict::bad_output;
