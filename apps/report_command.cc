@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "apps/log_argument.h"
 #include "apps/report_film.h"
 #include "lab/log_reader.h"
 #include "lab/report.h"
@@ -20,12 +21,6 @@ namespace {
 std::string text_beside(const std::filesystem::path& log, const char* name) {
   std::ifstream file(log.parent_path() / name, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-// The folder of a log stands for the log in it.
-std::filesystem::path log_path(const std::string& argument) {
-  const std::filesystem::path path(argument);
-  return std::filesystem::is_directory(path) ? path / "log.mcap" : path;
 }
 
 }  // namespace
