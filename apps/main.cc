@@ -29,6 +29,10 @@ int main(int argc, char** argv) {
   footfall::apps::add_new_command(app, exit_code);
   footfall::apps::add_report_command(app, exit_code);
   footfall::apps::add_events_command(app, exit_code);
+  footfall::apps::add_replay_command(app, exit_code);
+  footfall::apps::add_diff_command(app, exit_code);
+  footfall::apps::add_why_command(app, exit_code);
+  footfall::apps::add_export_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "apps/log_argument.h"
 #include "apps/report_film.h"
 #include "core/units.h"
 #include "lab/log_reader.h"
@@ -51,11 +52,6 @@ lab::Log read_part(const std::string& path, const ReportArguments& arguments) {
 }
 
 }  // namespace
-
-std::filesystem::path log_path(const std::string& argument) {
-  const std::filesystem::path path(argument);
-  return std::filesystem::is_directory(path) ? path / "log.mcap" : path;
-}
 
 int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
   const std::filesystem::path path = log_path(arguments.log);

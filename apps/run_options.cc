@@ -58,8 +58,11 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_flag("--no-log", o.no_log, "Writes no files");
   command.add_flag("--no-report", o.no_report, "No report page beside the log");
   command.add_option("--film", o.film, "Writes the run as MP4 (needs ffmpeg)");
-  command.add_flag("--log-all", o.log_all, "Logs every tick");
-  command.add_option("--log-every", o.log_every, "Logs every N-th tick")
+  command.add_flag("--log-all", o.log_all, "Logs the derived signals of every tick");
+  command
+      .add_option(
+          "--log-every", o.log_every,
+          "Logs the derived signals of each N-th tick, of all around transitions and faults")
       ->check(positive)
       ->capture_default_str();
   command.add_flag("--realtime", o.realtime, "Paced by the wall clock");

@@ -126,7 +126,6 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
   spec.max_steps = options.steps;
   spec.max_time = options.duration;
   spec.realtime = options.realtime;
-  spec.log_every = options.log_all ? 1 : options.log_every;
   spec.stop = stop;
   if (core::allocations_are_counted()) {
     spec.arm_allocations = core::arm_allocation_count;
@@ -153,6 +152,25 @@ void write_file(const std::string& path, const std::string& text) {
   fs::rename(temporary, path);
 }
 
+namespace {
+
+// What was asked for, for whoever reads the log.
+std::string command_line(const RunOptions& options) {
+  std::string text = "run " + options.behavior;
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", name, value);
+  };
+  add("--robot", options.robot);
+  add("--world", options.world);
+  for (const std::string& set : options.set) add("--set", set);
+  for (const std::string& push : options.pushes) add("--push", '"' + push + '"');
+  add("--goal", options.goal);
+  add("--goal-velocity", options.goal_velocity);
+  return text;
+}
+
+}  // namespace
+
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,
                                             const sim::WorldDescription& world,
@@ -164,9 +182,17 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
     throw std::runtime_error("cannot create the log's folder '" + options.log +
                              "': " + error.message());
   id.log = options.log + "/log.mcap";
-  return std::make_unique<engine::LogWriter>(
-      id.log, behavior.signals,
-      lab::make_log_header(behavior, world.name, options.backend, options.seed));
+  lab::LogSource source;
+  source.world = world.name;
+  source.backend = options.backend;
+  source.world_file = world.path;
+  source.settings = loop_settings(options, world);
+  core::Diagnostics ignored;  // they were loaded
+  source.set = split_settings(options.set, ignored);
+  source.command = command_line(options);
+  source.row_every = options.log_all ? 1 : options.log_every;
+  return std::make_unique<engine::LogWriter>(id.log, behavior.signals,
+                                             lab::make_log_header(behavior, source));
 }
 
 }  // namespace footfall::apps

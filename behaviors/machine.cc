@@ -123,6 +123,13 @@ bool Machine::raise(int event) noexcept {
   return false;
 }
 
+void Machine::copy_outside_events(std::vector<int>& events) const noexcept {
+  const EventQueue& queue = impl_->outside;
+  for (int i = 0; i < queue.size() && events.size() < events.capacity(); ++i) {
+    events.push_back(queue.at(i));
+  }
+}
+
 void Machine::raise_fault(core::Fault fault, core::Reaction reaction) noexcept {
   const int event = impl_->behavior.fault_events[at(static_cast<int>(fault))];
   auto& faults = impl_->fault_events;
@@ -163,6 +170,9 @@ std::uint32_t Machine::entries(int state) const noexcept {
 }
 std::uint8_t Machine::guard_outcomes(int transition) const noexcept {
   return impl_->statechart.guard_outcomes(transition);
+}
+std::int64_t Machine::deadline(int transition) const noexcept {
+  return impl_->statechart.deadline(transition);
 }
 const EvaluationContext& Machine::context() const noexcept { return impl_->statechart.context(); }
 std::size_t Machine::outside_room() const noexcept { return impl_->outside.room(); }

@@ -74,6 +74,8 @@ class Machine {
   // Outside events, by id (Behavior::find_event); false: the queue is full (counted, raised).
   bool raise(int event) noexcept;
   std::size_t outside_room() const noexcept;  // how many more may be raised before the next tick
+  // Those that wait for the next tick, in order, at the end of `events` as far as it has room.
+  void copy_outside_events(std::vector<int>& events) const noexcept;
   // Fault events `fault.NAME`; with reaction safe_state the `safe` state is entered at this tick.
   void raise_fault(core::Fault fault, core::Reaction reaction) noexcept;
   void enter_safe() noexcept;  // rule 10
@@ -103,6 +105,8 @@ class Machine {
   // bit 1 true.
   std::uint32_t entries(int state) const noexcept;
   std::uint8_t guard_outcomes(int transition) const noexcept;
+  // The tick at which a transition's `after` holds; -1: it has none, or was taken by it already.
+  std::int64_t deadline(int transition) const noexcept;
   // What expressions over states, parameters and time read now.
   const EvaluationContext& context() const noexcept;
   const core::FaultCounters& faults() const noexcept;

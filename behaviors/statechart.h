@@ -29,6 +29,10 @@ class EventQueue {
   bool push(int event) noexcept;
   int front() const noexcept { return items_[static_cast<std::size_t>(first_)]; }
   int pop() noexcept;
+  int size() const noexcept { return count_; }
+  int at(int i) const noexcept {  // the i-th from the front
+    return items_[static_cast<std::size_t>(first_ + i) % items_.size()];
+  }
 
  private:
   std::vector<int> items_;
@@ -67,6 +71,10 @@ class Statechart {
   std::span<const int> transitions_taken() const noexcept { return taken_; }
   // Events that came to their turn in this tick, in order; those that enabled nothing, too.
   std::span<const int> events_taken() const noexcept { return events_; }
+  // The tick at which a transition's `after` holds, -1 if it has none in force.
+  std::int64_t deadline(int transition) const noexcept {
+    return timer_taken_[idx(transition)] != 0 ? -1 : deadlines_[idx(transition)];
+  }
   // What a transition's guard has given so far: bit 0 false, bit 1 true.
   std::uint8_t guard_outcomes(int transition) const noexcept {
     return guard_outcomes_[idx(transition)];

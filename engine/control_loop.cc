@@ -76,7 +76,7 @@ int latency_ticks(double latency, double period) {
 
 std::unique_ptr<ScriptLink> make_scripts(const behaviors::Behavior& behavior,
                                          const LoopSettings& settings) {
-  if (behavior.scripts.empty()) return nullptr;
+  if (behavior.scripts.empty() || !settings.run_scripts) return nullptr;
   behaviors::ScriptSettings script;
   script.access = settings.script_access;
   script.seed = settings.seed;
@@ -119,7 +119,8 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       task_rows_(rows_of(behavior, "task", task_names(behavior))),
       internal_rows_(rows_of(behavior, "internal", behavior.internal_instances)),
       task_in_force_(task_rows_.size(), 1),
-      internal_in_force_(internal_rows_.size(), 1) {
+      internal_in_force_(internal_rows_.size(), 1),
+      watch_(behavior) {
   machine_->set_surface(settings.surface);
 }
 
@@ -134,6 +135,7 @@ void ControlLoop::start() {
   write_measured_signals();
   leave_gaps();
   machine_->start(measure_);
+  watch_.remember(machine_->parameters());
 }
 
 LoopState ControlLoop::tick() noexcept {
@@ -150,6 +152,16 @@ bool ControlLoop::sense() noexcept {
   return fresh_;
 }
 
+void ControlLoop::record(InputTrace& trace) {
+  trace.size_for(behavior_);
+  trace_ = &trace;
+}
+
+void ControlLoop::play(InputTrace& trace) {
+  record(trace);
+  playing_ = true;
+}
+
 void ControlLoop::compute() noexcept {
   edits_.apply(tick_, *machine_);
   estimator_.estimate(sensors_, estimate_);
@@ -158,9 +170,9 @@ void ControlLoop::compute() noexcept {
   handle(safety_.check_state(sensors_, model_));
   if (!fresh_ && was_fresh_) react(core::Fault::sensor_stale);  // counted where it was read
   was_fresh_ = fresh_;
-  planners_.deliver(tick_, *machine_);
-  if (scripts_) scripts_->deliver(*machine_);
+  take_inputs();
   machine_->tick(tick_, measure_);
+  if (trace_ != nullptr) watch_.remember(machine_->parameters());
   observe_support();
   planners_.take(tick_, *machine_);
   if (scripts_ && !scripts_->post(*machine_, signals_.values(), time())) {
@@ -178,6 +190,29 @@ void ControlLoop::compute() noexcept {
 void ControlLoop::actuate() noexcept {
   hardware_.write(commands_);
   ++tick_;
+}
+
+// What comes from outside of the tick, as it arrives now or, in a replay, as it was logged.
+void ControlLoop::take_inputs() noexcept {
+  if (trace_ == nullptr) {
+    planners_.deliver(tick_, *machine_, nullptr);
+    if (scripts_) scripts_->deliver(*machine_);
+  } else if (playing_) {
+    trace_->planned.clear();
+    planners_.deliver(tick_, *machine_, &trace_->planned, false);
+    for (const behaviors::PlanAnswer& plan : trace_->plans) machine_->deliver(plan);
+    for (const ParameterWrite& write : trace_->writes) {
+      machine_->parameters()[static_cast<std::size_t>(write.slot)] = write.value;
+    }
+    for (const int event : trace_->events) machine_->raise(event);
+    if (trace_->inspect) trace_->inspect();
+  } else {
+    trace_->clear();
+    planners_.deliver(tick_, *machine_, &trace_->plans);
+    if (scripts_) scripts_->deliver(*machine_);
+    watch_.find(machine_->parameters(), trace_->writes);
+    machine_->copy_outside_events(trace_->events);
+  }
 }
 
 // A fault is counted and raised when it appears; it must go away before it counts again.

@@ -13,6 +13,7 @@
 #include "core/signal_table.h"
 #include "engine/edit_door.h"
 #include "engine/estimator.h"
+#include "engine/input_trace.h"
 #include "engine/planner_link.h"
 #include "engine/safety.h"
 #include "engine/script_link.h"
@@ -28,6 +29,7 @@ struct LoopSettings {
   double planner_latency = 2e-3;    // s, lock-step
   bool lockstep = true;             // the caller's clock waits for what other threads compute
   behaviors::ScriptAccess script_access;
+  bool run_scripts = true;       // false: a replay, which has their answers
   std::uint64_t seed = 0;        // of the scripts' random numbers
   model::HeightSurface surface;  // of the world, for references that follow it
 };
@@ -87,6 +89,13 @@ class ControlLoop {
 
   // While planners are dropped none of them answers: a fault to be tried on purpose.
   void drop_planners(bool on) noexcept { planners_.drop(on); }
+  // Before start(). What comes from outside in each tick goes to `trace`; it must outlive the loop.
+  void record(InputTrace& trace);
+  // Before start(). Each tick takes what comes from outside from `trace`, which the caller fills
+  // between ticks; planners' answers of its own are only told (InputTrace::planned). Scripts
+  // must not run.
+  void play(InputTrace& trace);
+  bool fresh() const noexcept { return fresh_; }  // whether the last sense() read something new
 
   // Ends the run: the machine's safe state, then the hardware's safe stop.
   void safe_stop() noexcept;
@@ -114,6 +123,7 @@ class ControlLoop {
   void write_task_signals() noexcept;
   void write_internal_signals() noexcept;
   void leave_gaps() noexcept;
+  void take_inputs() noexcept;
 
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
@@ -142,6 +152,9 @@ class ControlLoop {
   std::array<FaultPlace, core::kFaultCount> last_place_{}, worst_place_{};
   core::Fault ended_by_ = core::Fault::count;
   bool fresh_ = true, was_fresh_ = true;  // new sensor data in this tick, in the previous
+  WriteWatch watch_;
+  InputTrace* trace_ = nullptr;
+  bool playing_ = false;
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;
 };

@@ -1,29 +1,14 @@
-// The protobuf side of the log: field names of signals and the FileDescriptorSets that describe the
-// messages, written by hand (https://protobuf.dev/programming-guides/encoding) to need no
-// libprotobuf.
+// The messages of a log as a protobuf schema; the one door to libprotobuf. The messages themselves
+// are written by hand (engine/proto_bytes.h), since the writer must not allocate. docs/log.md says
+// what each field means.
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
-
-#include "core/signal_table.h"
 
 namespace footfall::engine {
 
-// Field name of each signal: letters, digits and `_`, unique, in the order of the table.
-std::vector<std::string> field_names(const core::SignalTable& table);
-
-// True where the signal is stored as double: absolute times outgrow a float.
-bool is_double(const core::SignalInfo& info);
-
-// Serialized google.protobuf.FileDescriptorSet with the one message footfall.Signals.
-std::vector<std::uint8_t> signals_descriptor(const core::SignalTable& table);
-
-// The same for footfall.Event.
-std::vector<std::uint8_t> event_descriptor();
-
-// A protobuf varint at the end of `out`.
-void put_varint(std::vector<std::uint8_t>& out, std::uint64_t value);
+// Serialized google.protobuf.FileDescriptorSet with all messages: the data of every schema record.
+std::vector<std::uint8_t> log_descriptor_set();
 
 }  // namespace footfall::engine

@@ -1,50 +1,29 @@
-// The log of a run; see log_writer.h.
+// From the tick to the logger's thread; see log_writer.h.
 #include "engine/log_writer.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <exception>
+#include <thread>
 
-#include "core/units.h"
-#include "engine/log_schema.h"
-#include "engine/mcap_writer.h"
+#include "engine/log_encoder.h"
+#include "engine/proto_bytes.h"
 
 namespace footfall::engine {
 namespace {
 
 constexpr std::size_t kMaxText = 4096;
-constexpr int kWire64 = 1, kWireText = 2, kWire32 = 5;  // protobuf wire types
+constexpr std::size_t kMessageBytes = 256 * 1024;  // of a batch
+constexpr std::size_t kLongestMessage = 3 * (kMaxText + 4) + 64;
+constexpr double kBatchTime = 0.05;  // s; two of them are lost at most
+constexpr std::uint32_t kBatches = 2;
 
-// A row as it is sent: tags stand, the numbers between them change. Most signals are floats.
-struct Row {
-  std::vector<std::uint8_t> bytes;
-  std::vector<std::uint32_t> offset;  // of each number
-  std::vector<bool> wide;             // a double
-
-  explicit Row(const core::SignalTable& table) {
-    for (int i = 0; i < table.size(); ++i) {
-      const bool is_wide = is_double(table.info(i));
-      put_varint(bytes, static_cast<std::uint64_t>((i + 1) << 3 | (is_wide ? kWire64 : kWire32)));
-      offset.push_back(static_cast<std::uint32_t>(bytes.size()));
-      wide.push_back(is_wide);
-      bytes.resize(bytes.size() + (is_wide ? sizeof(double) : sizeof(float)));
-    }
-  }
-};
-
-std::string signals_json(const core::SignalTable& table) {
-  const std::vector<std::string> fields = field_names(table);
-  auto list = nlohmann::ordered_json::array();
-  for (int i = 0; i < table.size(); ++i) {
-    const core::SignalInfo& info = table.info(i);
-    list.push_back({{"name", info.name},
-                    {"field", fields[static_cast<std::size_t>(i)]},
-                    {"unit", core::unit_text(info.dimension)},
-                    {"doc", info.doc}});
-  }
-  return list.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+using Clock = std::chrono::steady_clock;
 
 // At most kMaxText bytes, never half a UTF-8 character.
 std::string_view cut(std::string_view text) noexcept {
@@ -54,83 +33,234 @@ std::string_view cut(std::string_view text) noexcept {
   return text.substr(0, end);
 }
 
-std::size_t varint_size(std::size_t value) noexcept {
-  std::size_t size = 1;
-  for (; value >= 0x80; value >>= 7) ++size;
-  return size;
+int batch_ticks(std::int64_t rate_mhz) {
+  return std::max(1, static_cast<int>(kBatchTime * static_cast<double>(rate_mhz) / 1e3));
 }
 
-std::uint8_t* store_text(std::uint8_t* at, int field, std::string_view text) noexcept {
-  *at++ = static_cast<std::uint8_t>(field << 3 | kWireText);
-  std::size_t size = text.size();
-  for (; size >= 0x80; size >>= 7) *at++ = static_cast<std::uint8_t>(size | 0x80);
-  *at++ = static_cast<std::uint8_t>(size);
-  return std::copy(text.begin(), text.end(), at);
-}
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
+// Two batches in turn: the tick fills one while the thread writes the other.
 struct LogWriter::Impl {
-  Impl(const std::string& path, const core::SignalTable& table)
-      : row(table),
-        mcap(path, "footfall",
-             std::max(row.bytes.size(), 3 * (kMaxText + 4) + sizeof(double) + 1)) {}
+  Impl(const std::string& path, const core::SignalTable& table, const LogHeader& header)
+      : most_ticks(batch_ticks(header.rate_mhz)),
+        signals(at(table.size())),
+        lockstep(header.lockstep),
+        encoder(path, table, header, most_ticks) {
+    for (LogBatch& batch : batches) {
+      batch.inputs.resize(at(most_ticks) * at(encoder.layout().columns()));
+      batch.signals.resize(at(most_ticks) * signals);
+      batch.highlight.resize(at(most_ticks));
+      batch.plan_rows.resize(at(kMostPlans * kPlanColumns));
+      batch.messages.resize(kMessageBytes);
+    }
+    thread = std::thread([this] { work(); });
+  }
 
-  Row row;
-  McapWriter mcap;
-  std::uint16_t signals = 0, events = 0;  // channels
-  std::vector<std::uint32_t> wide;        // indices of the doubles
+  LogBatch& filling() noexcept {
+    return batches[filled.load(std::memory_order_relaxed) % kBatches];
+  }
+  bool room() noexcept;
+  void hand_over() noexcept;
+  std::uint8_t* message(std::size_t most) noexcept;
+  void finish_message(LogChannel channel, std::int64_t tick, std::uint8_t* end) noexcept;
+  void write_event(std::int64_t tick, std::string_view kind, std::string_view name,
+                   std::string_view detail) noexcept;
+  void work() noexcept;
+  void stop() noexcept;
+
+  const int most_ticks;
+  const std::size_t signals;
+  const bool lockstep;
+  LogEncoder encoder;
+  std::array<LogBatch, kBatches> batches;
+  // Numbers of batches: written <= filled <= written + kBatches; the one being filled is `filled`.
+  std::atomic<std::uint32_t> filled{0}, written{0};
+  std::atomic<bool> ending{false};
+  std::int64_t dropped = 0;   // ticks since there was no room
+  Clock::time_point started;  // of the batch being filled
+  std::thread thread;
 };
+
+// Whether there is a batch to fill; in lock-step there always is, after a while.
+bool LogWriter::Impl::room() noexcept {
+  const std::uint32_t mine = filled.load(std::memory_order_relaxed);
+  for (auto done = written.load(std::memory_order_acquire); mine - done >= kBatches;
+       done = written.load(std::memory_order_acquire)) {
+    if (!lockstep) return false;
+    written.wait(done);
+  }
+  return true;
+}
+
+void LogWriter::Impl::hand_over() noexcept {
+  const LogBatch& batch = filling();
+  if (batch.ticks == 0 && batch.plans == 0 && batch.message_bytes == 0) return;
+  filled.fetch_add(1, std::memory_order_release);
+  filled.notify_one();
+}
+
+void LogWriter::Impl::work() noexcept {
+  for (std::uint32_t number = 0;; ++number) {
+    filled.wait(number, std::memory_order_acquire);
+    if (ending.load()) return;  // everything is written: stop() has waited for it
+    LogBatch& batch = batches[number % kBatches];
+    encoder.write(batch);
+    batch.ticks = batch.plans = 0;
+    batch.message_bytes = 0;
+    written.store(number + 1, std::memory_order_release);
+    written.notify_all();
+  }
+}
+
+void LogWriter::Impl::stop() noexcept {
+  if (!thread.joinable()) return;
+  const std::uint32_t mine = filled.load();
+  for (auto done = written.load(); done != mine; done = written.load()) written.wait(done);
+  ending.store(true);
+  filled.fetch_add(1);
+  filled.notify_one();
+  thread.join();
+}
+
+std::uint8_t* LogWriter::Impl::message(std::size_t most) noexcept {
+  if (!room()) return nullptr;
+  const std::size_t need = sizeof(LogBatch::MessageHead) + most;
+  if (filling().message_bytes + need > kMessageBytes) {
+    hand_over();
+    if (!room()) return nullptr;
+  }
+  LogBatch& batch = filling();
+  return batch.messages.data() + batch.message_bytes + sizeof(LogBatch::MessageHead);
+}
+
+void LogWriter::Impl::finish_message(LogChannel channel, std::int64_t tick,
+                                     std::uint8_t* end) noexcept {
+  LogBatch& batch = filling();
+  std::uint8_t* begin = batch.messages.data() + batch.message_bytes;
+  const auto size = static_cast<std::size_t>(end - begin);
+  const LogBatch::MessageHead head{encoder.time_ns(tick),
+                                   static_cast<std::uint32_t>(size - sizeof(LogBatch::MessageHead)),
+                                   channel};
+  std::memcpy(begin, &head, sizeof head);
+  batch.message_bytes += size;
+}
+
+void LogWriter::Impl::write_event(std::int64_t tick, std::string_view kind, std::string_view name,
+                                  std::string_view detail) noexcept {
+  std::uint8_t* to = message(kLongestMessage);
+  if (to == nullptr) return;
+  ProtoBytes proto(to);
+  proto.real(1, static_cast<double>(encoder.time_ns(tick)) * 1e-9);
+  proto.text(2, cut(kind));
+  proto.text(3, cut(name));
+  proto.text(4, cut(detail));
+  proto.signed_number(5, tick);
+  finish_message(LogChannel::events, tick, proto.end());
+}
 
 LogWriter::LogWriter(const std::string& path, const core::SignalTable& table,
                      const LogHeader& header)
-    : impl_(std::make_unique<Impl>(path, table)) {
-  McapWriter& mcap = impl_->mcap;
-  mcap.add_metadata("run", header.run);
-  mcap.add_metadata("signals", {{"signals", signals_json(table)}});
-  const std::uint16_t signals_schema =
-      mcap.add_schema("footfall.Signals", "protobuf", signals_descriptor(table));
-  const std::uint16_t event_schema =
-      mcap.add_schema("footfall.Event", "protobuf", event_descriptor());
-  impl_->signals = mcap.add_channel(signals_schema, "/signals", "protobuf");
-  impl_->events = mcap.add_channel(event_schema, "/events", "protobuf");
-  for (std::uint32_t i = 0; i < impl_->row.wide.size(); ++i) {
-    if (impl_->row.wide[i]) impl_->wide.push_back(i);
+    : impl_(std::make_unique<Impl>(path, table, header)) {}
+
+LogWriter::~LogWriter() {
+  try {
+    close();
+  } catch (const std::exception&) {
+    // Whoever wants to know calls close().
   }
 }
 
-LogWriter::~LogWriter() = default;
-
-void LogWriter::sample(std::int64_t time_ns, const double* values) noexcept {
-  const Row& row = impl_->row;
-  std::uint8_t* to = impl_->mcap.message(impl_->signals, time_ns, row.bytes.size());
-  std::memcpy(to, row.bytes.data(), row.bytes.size());
-  // The rare doubles come last: writing 4 bytes there first does no harm, and the loop has no
-  // branch.
-  for (std::size_t i = 0; i < row.offset.size(); ++i) {
-    const auto value = static_cast<float>(values[i]);
-    std::memcpy(to + row.offset[i], &value, sizeof value);
+void LogWriter::tick(std::int64_t tick, const hal::Sensors& sensors, bool fresh,
+                     const hal::Commands& commands, const double* signals,
+                     bool highlight) noexcept {
+  Impl& m = *impl_;
+  if (!m.room()) {
+    ++m.dropped;
+    return;
   }
-  for (const std::uint32_t i : impl_->wide) {
-    std::memcpy(to + row.offset[i], &values[i], sizeof(double));
+  if (m.dropped > 0) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%lld ticks", static_cast<long long>(m.dropped));
+    m.write_event(tick, "gap", text.data(), "");
+    m.dropped = 0;
+  }
+  if (m.filling().ticks > 0 && m.filling().first_tick + m.filling().ticks != tick) {
+    m.hand_over();
+    if (!m.room()) {
+      ++m.dropped;
+      return;
+    }
+  }
+  LogBatch& batch = m.filling();
+  if (batch.ticks == 0) {
+    batch.first_tick = tick;
+    if (!m.lockstep) m.started = Clock::now();
+  }
+  const auto row = at(batch.ticks++);
+  const InputLayout& layout = m.encoder.layout();
+  layout.pack(sensors, fresh, commands, batch.inputs.data() + row * at(layout.columns()));
+  std::memcpy(batch.signals.data() + row * m.signals, signals, m.signals * sizeof(double));
+  batch.highlight[row] = highlight ? 1 : 0;
+  const bool late =
+      !m.lockstep && Clock::now() - m.started > std::chrono::duration<double>(kBatchTime);
+  if (batch.ticks == m.most_ticks || late) m.hand_over();
+}
+
+void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
+  Impl& m = *impl_;
+  for (const behaviors::PlanAnswer& plan : trace.plans) {
+    if (!m.room()) return;
+    if (m.filling().plans == kMostPlans) m.hand_over();
+    if (!m.room()) return;
+    LogBatch& batch = m.filling();
+    std::uint64_t* row = batch.plan_rows.data() + at(batch.plans++ * kPlanColumns);
+    *row++ = static_cast<std::uint64_t>(tick);
+    *row++ = static_cast<std::uint64_t>(plan.planner);
+    *row++ = plan.sequence;
+    *row++ = plan.ok ? 1 : 0;
+    const auto put = [&](double value) { *row++ = std::bit_cast<std::uint64_t>(value); };
+    std::ranges::for_each(plan.target, put);
+    std::ranges::for_each(plan.predicted_pos, put);
+    std::ranges::for_each(plan.predicted_vel, put);
+    put(plan.extension);
+  }
+  if (trace.writes.empty() && trace.events.empty()) return;
+  constexpr std::size_t kWrites = 256;  // of one message
+  for (std::size_t from = 0; from == 0 || from < trace.writes.size(); from += kWrites) {
+    const std::size_t count = std::min(kWrites, trace.writes.size() - from);
+    std::uint8_t* to = m.message(kLongestMessage);
+    if (to == nullptr) return;
+    ProtoBytes proto(to);
+    proto.signed_number(1, tick);
+    for (std::size_t k = from; k < from + count; ++k) {
+      proto.number(2, static_cast<unsigned>(trace.writes[k].slot));
+    }
+    proto.begin_text(3, count * sizeof(double));
+    for (std::size_t k = from; k < from + count; ++k) {
+      proto.fixed(std::bit_cast<std::uint64_t>(trace.writes[k].value));
+    }
+    if (from == 0) {
+      for (const int event : trace.events) proto.number(4, static_cast<unsigned>(event));
+    }
+    m.finish_message(LogChannel::edits, tick, proto.end());
   }
 }
 
-void LogWriter::event(std::int64_t time_ns, std::string_view kind, std::string_view name,
+void LogWriter::event(std::int64_t tick, std::string_view kind, std::string_view name,
                       std::string_view detail) noexcept {
-  const std::array<std::string_view, 3> texts = {cut(kind), cut(name), cut(detail)};
-  std::size_t size = 1 + sizeof(double);
-  for (const std::string_view text : texts) size += 1 + varint_size(text.size()) + text.size();
-  std::uint8_t* at = impl_->mcap.message(impl_->events, time_ns, size);
-  *at++ = 1 << 3 | kWire64;
-  const double time = static_cast<double>(time_ns) * 1e-9;
-  std::memcpy(at, &time, sizeof time);
-  at += sizeof time;
-  for (int i = 0; i < 3; ++i) at = store_text(at, i + 2, texts[static_cast<std::size_t>(i)]);
+  impl_->write_event(tick, kind, name, detail);
 }
 
-void LogWriter::close() { impl_->mcap.close(); }
+void LogWriter::close() {
+  if (impl_->thread.joinable()) {
+    impl_->hand_over();
+    impl_->stop();
+  }
+  impl_->encoder.close();
+}
 
-bool LogWriter::failed() const noexcept { return impl_->mcap.failed(); }
+bool LogWriter::failed() const noexcept { return impl_->encoder.failed(); }
 
 }  // namespace footfall::engine

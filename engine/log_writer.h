@@ -1,7 +1,8 @@
-// The log of a run: every signal at a chosen rate and every event, as an MCAP file of protobuf
-// messages that carries its own schema, names, units and the run's settings. Time is simulated
-// time, so two equal runs give files that are equal byte for byte. Called by the logger, after the
-// tick.
+// The log of a run, as an MCAP file of protobuf messages that carries its own schema and all that a
+// replay needs (docs/log.md): inputs and commands of every tick without loss, derived signals,
+// events, planners' answers, edits, and the files that the run was made from. The tick's side
+// copies a tick into memory that is there already; a thread codes, compresses and writes. Time is
+// that of the ticks, so two equal runs give files that are equal byte for byte.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +13,42 @@
 #include <vector>
 
 #include "core/signal_table.h"
+#include "engine/input_trace.h"
+#include "hal/hardware.h"
 
 namespace footfall::engine {
 
-// What a run was: key and value pairs for the metadata record "run" (behavior, robot, world, seed,
-// version, states, model, contacts, ...), in this order. Keys that the report reads:
+// A file that the run was made from, as it was then.
+struct LogFile {
+  std::string path;  // absolute
+  std::string media_type;
+  std::string content;
+};
+
+// Where a parameter's values are in Machine::parameters().
+struct LogParameter {
+  std::string name;
+  int slot = 0, size = 1;
+};
+
+// What a run was. Keys of `run` that the report reads (metadata record "run", in this order):
 //   behavior, robot, world, backend, seed, version: texts
 //   states: JSON array of dotted state paths; element i belongs to value i of the signal `state`
 //   model: absolute path of the robot's MJCF, for the film strip
 struct LogHeader {
   std::vector<std::pair<std::string, std::string>> run;
+  std::string setup;                // JSON, metadata record "setup": what a replay starts from
+  std::vector<std::string> events;  // names, by event id
+  std::vector<LogFile> files;       // attachments
+  std::vector<LogParameter> parameters;
+  std::vector<double> values;  // of the parameters, by slot
+  std::vector<std::string> joints, contacts;
+  std::int64_t rate_mhz = 1'000'000;  // ticks per second, in millihertz
+  int row_every = 6;     // ticks from one row of derived signals to the next, away from highlights
+  bool lockstep = true;  // the tick waits for the log; else a tick that finds no room is dropped,
+                         // and an event `gap` says how many were
 };
 
-// Channels:
-//   /signals  footfall.Signals  one field a signal (float; double for times), named as the signal
-//                               with `_` for `.`; field number = index of the signal + 1
-//   /events   footfall.Event    {double time, string kind, string name, string detail}
-// Metadata records: "run" (LogHeader) and "signals" (key "signals": JSON array of {name, field,
-// unit, doc} in the order of the table).
 class LogWriter {
  public:
   // Throws std::runtime_error with one sentence that names the path if it cannot be created.
@@ -38,11 +57,16 @@ class LogWriter {
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  // Writes one row. values: table.size() numbers in SI, e.g. SignalTable::values(). About 0.1 us
-  // for 200 signals, and no allocation; each 0.5 s or 256 kB a chunk is compressed and written.
-  void sample(std::int64_t time_ns, const double* values) noexcept;
-  // Writes one event. kind: transition, mark, fault, plan, step, ...; texts are cut at 4096 bytes.
-  void event(std::int64_t time_ns, std::string_view kind, std::string_view name,
+  // One tick, after its control: signals are table.size() numbers in SI. highlight: derived signals
+  // at full rate from 0.2 s before to 0.2 s after. Ticks count up from -1 (what start() read) or 0.
+  // Each 50 ms (of ticks; without lock-step of the clock, too) what there is is compressed and
+  // written, so that a killed process leaves everything up to 100 ms before.
+  void tick(std::int64_t tick, const hal::Sensors& sensors, bool fresh,
+            const hal::Commands& commands, const double* signals, bool highlight) noexcept;
+  // What came from outside in a tick.
+  void inputs(std::int64_t tick, const InputTrace& trace) noexcept;
+  // kind: transition, mark, fault, plan, step, ...; texts are cut at 4096 bytes.
+  void event(std::int64_t tick, std::string_view kind, std::string_view name,
              std::string_view detail) noexcept;
   // Ends the file. Throws std::runtime_error if any write failed. The destructor calls it, too, and
   // then keeps silent.

@@ -24,6 +24,8 @@ enum class McapRecord : std::uint8_t {
   message_index = 0x07,
   chunk_index = 0x08,
   statistics = 0x0B,
+  attachment = 0x09,
+  attachment_index = 0x0A,
   metadata = 0x0C,
   metadata_index = 0x0D,
   summary_offset = 0x0E,

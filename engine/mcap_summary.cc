@@ -31,7 +31,7 @@ void McapWriter::write_statistics() {
   content.u64(message_count_);
   content.u16(static_cast<std::uint16_t>(schema_records_.size()));
   content.u32(static_cast<std::uint32_t>(channels_.size()));
-  content.u32(0);  // attachments
+  content.u32(static_cast<std::uint32_t>(attachments_.size()));
   content.u32(static_cast<std::uint32_t>(metadata_.size()));
   content.u32(static_cast<std::uint32_t>(chunks_.size()));
   content.u64(file_start_);
@@ -73,6 +73,19 @@ void McapWriter::write_summary() {
   group(McapRecord::statistics, [&] { write_statistics(); });
   group(McapRecord::chunk_index, [&] {
     for (const ChunkEntry& entry : chunks_) write_chunk_index(entry);
+  });
+  group(McapRecord::attachment_index, [&] {
+    for (const AttachmentEntry& entry : attachments_) {
+      McapBytes content(scratch_);
+      content.u64(entry.offset);
+      content.u64(entry.length);
+      content.u64(0);  // log time
+      content.u64(0);  // creation time
+      content.u64(entry.size);
+      content.text(entry.name);
+      content.text(entry.media_type);
+      put_record(static_cast<std::uint8_t>(McapRecord::attachment_index), scratch_);
+    }
   });
   group(McapRecord::metadata_index, [&] {
     for (const MetadataEntry& entry : metadata_) {

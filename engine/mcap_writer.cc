@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "MCAP is little-endian
 constexpr std::size_t kChunkBytes = 256 * 1024;
 constexpr std::uint64_t kChunkTime = 500'000'000;  // ns of simulated time
 constexpr std::size_t kReservedChunks = 8192;      // more than an hour at kChunkTime
-constexpr int kLevel = 1;                          // of zstd: the fastest that is still small
+constexpr int kLevel = 3;                          // of zstd
 
 constexpr auto kCrcTables = [] {
   std::array<std::array<std::uint32_t, 256>, 8> tables{};
@@ -169,6 +169,23 @@ void McapWriter::add_metadata(std::string_view name, const McapPairs& pairs) {
   content.raw(map);
   metadata_.push_back({position(), scratch_.size() + kMcapRecordHead, std::string(name)});
   put_record(static_cast<std::uint8_t>(McapRecord::metadata), scratch_);
+  write_out();
+}
+
+void McapWriter::add_attachment(std::string_view name, std::string_view media_type,
+                                std::string_view content) {
+  std::vector<std::uint8_t> record;
+  McapBytes bytes(record);
+  bytes.u64(0);  // log time
+  bytes.u64(0);  // creation time: equal runs give equal files
+  bytes.text(name);
+  bytes.text(media_type);
+  bytes.u64(content.size());
+  record.insert(record.end(), content.begin(), content.end());
+  bytes.u32(crc32(record));
+  attachments_.push_back({position(), record.size() + kMcapRecordHead, content.size(),
+                          std::string(name), std::string(media_type)});
+  put_record(static_cast<std::uint8_t>(McapRecord::attachment), record);
   write_out();
 }
 

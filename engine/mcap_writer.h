@@ -45,6 +45,8 @@ class McapWriter {
   std::uint16_t add_channel(std::uint16_t schema, std::string_view topic,
                             std::string_view encoding);
   void add_metadata(std::string_view name, const McapPairs& pairs);
+  // A file as a whole.
+  void add_attachment(std::string_view name, std::string_view media_type, std::string_view content);
 
   // Room for one message of `size` <= max_message bytes, which the caller fills at once. Allocates
   // nothing as long as chunks stay below kReservedChunks. Ends the chunk before it where one is
@@ -69,6 +71,10 @@ class McapWriter {
   struct MetadataEntry {
     std::uint64_t offset, length;
     std::string name;
+  };
+  struct AttachmentEntry {
+    std::uint64_t offset, length, size;
+    std::string name, media_type;
   };
 
   void put_record(std::uint8_t kind, std::span<const std::uint8_t> content);
@@ -99,6 +105,7 @@ class McapWriter {
   std::vector<ChunkEntry> chunks_;
   std::vector<std::uint64_t> index_offsets_;  // per chunk and channel; 0: no message there
   std::vector<MetadataEntry> metadata_;
+  std::vector<AttachmentEntry> attachments_;
 };
 
 }  // namespace footfall::engine

@@ -65,9 +65,14 @@ void PlannerLink::observe(std::span<const int> stance_contacts, std::span<const 
   primed_ = true;
 }
 
-void PlannerLink::deliver(std::int64_t tick, behaviors::Machine& machine) noexcept {
+void PlannerLink::deliver(std::int64_t tick, behaviors::Machine& machine,
+                          std::vector<PlanAnswer>* told, bool hand_over) noexcept {
   while (count_ > 0 && pending_[head_].due <= tick) {
-    if (!dropped_) machine.deliver(pending_[head_].answer);
+    const PlanAnswer& answer = pending_[head_].answer;
+    if (!dropped_) {
+      if (told != nullptr && told->size() < told->capacity()) told->push_back(answer);
+      if (hand_over) machine.deliver(answer);
+    }
     head_ = (head_ + 1) % pending_.size();
     --count_;
   }

@@ -23,8 +23,10 @@ class PlannerLink {
   // that is approached). period in s.
   void observe(std::span<const int> stance_contacts, std::span<const double> parameters,
                double period) noexcept;
-  // Hands over the answers due at this tick.
-  void deliver(std::int64_t tick, behaviors::Machine& machine) noexcept;
+  // Hands over the answers due at this tick, and copies them to `told` as far as there is room.
+  // hand_over false: only that (a replay hands over what was logged).
+  void deliver(std::int64_t tick, behaviors::Machine& machine,
+               std::vector<behaviors::PlanAnswer>* told = nullptr, bool hand_over = true) noexcept;
   // While planners are dropped no answer arrives: what is due then is lost.
   void drop(bool on) noexcept { dropped_ = on; }
   // Answers this tick's requests, to be delivered later.

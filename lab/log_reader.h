@@ -1,18 +1,20 @@
 // Reads the log of a run (engine/log_writer.h), whole or cut off at any byte: what was complete
-// before the cut is there. After a run, for reports, comparisons and tests.
+// before the cut is there. After a run, for reports, comparisons, replay and tests.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace footfall::lab {
 
 struct LoggedSignal {
-  std::string name;   // dotted, e.g. com.pos.z
-  std::string field;  // of the protobuf message
-  std::string unit;   // SI; empty for a plain number
+  std::string name;  // dotted, e.g. com.pos.z
+  std::string unit;  // SI; empty for a plain number
   std::string doc;
 };
 
@@ -21,16 +23,72 @@ struct LoggedEvent {
   std::string kind;   // transition, mark, fault, plan, step, ...
   std::string name;
   std::string detail;
+  std::int64_t tick = 0;
+};
+
+// A planner's answer as it was handed to the behavior.
+struct LoggedPlan {
+  std::int64_t tick = 0;
+  int planner = 0;
+  std::uint32_t sequence = 0;
+  bool ok = false;
+  std::array<double, 3> target{};         // m, world
+  std::array<double, 2> predicted_pos{};  // m, world
+  std::array<double, 2> predicted_vel{};  // m/s, world
+  double extension = 0.0;                 // s
+};
+
+// What came to parameters and events from outside just before a tick of the behavior.
+struct LoggedEdit {
+  std::int64_t tick = 0;
+  std::vector<std::pair<int, double>> writes;  // slot and value
+  std::vector<int> events;                     // into Log::event_names
+};
+
+struct LoggedFile {
+  std::string path;
+  std::string media_type;
+  std::string content;
+};
+
+struct LoggedParameter {
+  std::string name;
+  int slot = 0, size = 1;  // in Log::parameter_values
+};
+
+// Inputs, commands and digests of ticks in a row, bit for bit.
+struct LoggedInputs {
+  std::vector<std::string> columns;  // as engine::InputLayout names them
+  std::vector<std::string> joints, contacts;
+  std::int64_t first_tick = 0;
+  std::vector<std::uint64_t> words;   // ticks x columns
+  std::vector<std::uint64_t> digest;  // of all signals, by tick
+
+  std::int64_t ticks() const { return static_cast<std::int64_t>(digest.size()); }
+  const std::uint64_t* row(std::int64_t tick) const {
+    return words.data() + static_cast<std::size_t>(tick - first_tick) * columns.size();
+  }
 };
 
 struct Log {
   std::string path;
   bool complete = false;  // false: no proper end, the run was killed or the file cut
   std::map<std::string, std::string> run;
+  std::string setup;             // JSON: what a replay starts from
+  std::int64_t rate_mhz = 1000;  // ticks per second, in millihertz
+  int row_every = 1;             // ticks from row to row away from transitions and faults
   std::vector<LoggedSignal> signals;
+  std::vector<std::int64_t> tick;          // of each row, growing
   std::vector<double> time;                // s, of each row
   std::vector<std::vector<float>> column;  // [signal][row], SI
   std::vector<LoggedEvent> events;
+  std::vector<LoggedPlan> plans;
+  std::vector<LoggedEdit> edits;
+  std::vector<std::string> event_names;
+  std::vector<LoggedParameter> parameters;
+  std::vector<double> parameter_values;  // before the first tick, by slot
+  std::vector<LoggedFile> files;
+  LoggedInputs inputs;  // empty unless asked for
 
   // Index of a signal, -1 if there is none.
   int find(std::string_view name) const;
@@ -41,8 +99,13 @@ struct Log {
   std::size_t rows() const { return time.size(); }
 };
 
+struct ReadOptions {
+  bool all_rows = false;  // false: only each row_every-th tick's, evenly spaced
+  bool inputs = false;
+};
+
 // Throws std::runtime_error with one sentence that names the path: missing, not a log, or damaged
 // or cut before its first row could be described.
-Log read_log(const std::string& path);
+Log read_log(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace footfall::lab

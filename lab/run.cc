@@ -23,12 +23,13 @@ double seconds_since(Clock::time_point start) {
 class Run {
  public:
   Run(engine::ControlLoop& loop, RunSpec& spec)
-      : loop_(loop), spec_(spec), metrics_(loop), log_(loop, spec.log, spec.log_every, spec.said) {
+      : loop_(loop), spec_(spec), metrics_(loop), log_(loop, spec.log, spec.said) {
     states_before_.reserve(loop.behavior().states.size());
   }
 
   RunResult execute() {
     loop_.start();
+    log_.after_start();
     for (const engine::EditBatch& edit : goal_edits(loop_.behavior(), spec_)) {
       const engine::EditReply reply = loop_.edits().submit(edit);
       if (!reply.accepted()) throw std::runtime_error("--goal: error: " + reply.reasons.front());

@@ -61,7 +61,6 @@ struct RunSpec {
   std::vector<ScheduledEvent> events;
   RunObserver* observer = nullptr;
   bool realtime = false;  // paced by the wall clock
-  int log_every = 6;      // ticks; 1: all
   engine::LogWriter* log = nullptr;
   const std::atomic<bool>* stop = nullptr;       // set by Ctrl-C
   std::function<void(const RunStatus&)> status;  // about five times a second of wall time

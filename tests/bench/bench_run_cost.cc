@@ -53,8 +53,7 @@ double bare_loop(const char* name, const std::vector<std::array<double, 6>>& tor
 
 double whole_run(const char* name, const std::string& log_path) {
   tests::Rig rig(name);
-  engine::LogWriter log(log_path, rig.behavior->signals,
-                        lab::make_log_header(*rig.behavior, "flat", "mujoco", 1));
+  engine::LogWriter log(log_path, rig.behavior->signals, lab::make_log_header(*rig.behavior, {}));
   lab::RunSpec spec;
   spec.max_time = kSimulated;
   spec.log = &log;

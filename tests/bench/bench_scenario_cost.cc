@@ -40,8 +40,7 @@ double timed(const lab::ScenarioDescription& scenario, const std::string& log_pa
   engine::LoopSettings settings;
   settings.planner_latency = world.planner_latency;
   engine::ControlLoop loop(behavior, watched ? sensors : plain, settings);
-  engine::LogWriter log(log_path, behavior.signals,
-                        lab::make_log_header(behavior, "flat", "mujoco", 1));
+  engine::LogWriter log(log_path, behavior.signals, lab::make_log_header(behavior, {}));
   lab::RunSpec spec;
   spec.max_time = scenario.duration;
   spec.log = &log;

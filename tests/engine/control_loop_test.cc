@@ -183,14 +183,17 @@ TEST(ControlLoop, TwoRunsAreEqualBitForBitAndSoAreTheirLogs) {
   for (const char* name : {"a", "b"}) {
     Rig rig("balance", 3);
     const std::string path = testing::TempDir() + "footfall_" + std::to_string(getpid()) + name;
-    engine::LogWriter log(path, rig.behavior->signals, {});
+    engine::LogHeader header;
+    header.rate_mhz = 1'500'000;
+    engine::LogWriter log(path, rig.behavior->signals, header);
     rig.loop->start();
     const auto size = static_cast<std::size_t>(rig.loop->signals().size());
     const bool again = !first.empty();
     for (std::size_t k = 0; k < kTicks; ++k) {
       rig.loop->tick();
       const double* values = rig.loop->signals().values();
-      log.sample(static_cast<std::int64_t>(k) * 1000, values);
+      log.tick(static_cast<std::int64_t>(k), rig.loop->sensors(), true, rig.loop->commands(),
+               values, k % 500 == 0);
       if (!again) first.insert(first.end(), values, values + size);
       if (again && std::memcmp(first.data() + k * size, values, size * sizeof(double)) != 0) {
         FAIL() << "tick " << k << " differs";

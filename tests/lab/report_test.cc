@@ -75,8 +75,7 @@ class Report : public testing::Test {
 
   template <typename F>
   void add(const std::string& name, F value, const std::string& unit = "") {
-    std::string field = name;
-    log_.signals.push_back({name, field, unit, ""});
+    log_.signals.push_back({name, unit, ""});
     std::vector<float> column;
     for (const double t : log_.time) column.push_back(static_cast<float>(value(t)));
     log_.column.push_back(std::move(column));
@@ -161,7 +160,7 @@ TEST_F(Report, TextFromTheRunIsNeverMarkup) {
 TEST_F(Report, ALogWithoutRowsStillGivesAPage) {
   Log none;
   none.path = "empty.mcap";
-  none.signals = {{"com.pos.x", "com_pos_x", "m", ""}};
+  none.signals = {{"com.pos.x", "m", ""}};
   none.column.resize(1);
   for (const bool is_static : {false, true}) {
     EXPECT_NE(report_html(none, {{}, {}, {}, "no EGL", is_static}).find("No pictures: no EGL"),

@@ -29,10 +29,11 @@ struct Logged {
 
 Logged run_logged(Rig& rig, lab::RunSpec& spec) {
   const std::string path = temporary("run.mcap");
+  lab::LogSource source;
+  source.row_every = 1;
   engine::LogWriter writer(path, rig.behavior->signals,
-                           lab::make_log_header(*rig.behavior, "flat", "mujoco", 1));
+                           lab::make_log_header(*rig.behavior, source));
   spec.log = &writer;
-  spec.log_every = 1;
   Logged logged{lab::run(*rig.loop, spec), {}};
   writer.close();
   logged.log = lab::read_log(path);

@@ -1,0 +1,48 @@
+// What reaches a tick from outside besides the sensors: parameters written, events raised,
+// planners' answers. A trace records it for the log; replay puts it back at the same place in the
+// tick.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "behaviors/machine.h"
+
+namespace footfall::engine {
+
+struct ParameterWrite {
+  int slot = 0;  // of Machine::parameters()
+  double value = 0.0;
+};
+
+// Of one tick; room for everything is made once, by size_for().
+struct InputTrace {
+  std::vector<ParameterWrite> writes;        // since the machine's last tick, whoever wrote
+  std::vector<int> events;                   // raised from outside, in order
+  std::vector<behaviors::PlanAnswer> plans;  // handed to the machine in this tick
+  // Of a replay:
+  std::vector<behaviors::PlanAnswer> planned;  // what the planners themselves gave
+  std::function<void()> inspect;               // called just before the machine's tick, if there
+
+  void size_for(const behaviors::Behavior& behavior);
+  void clear() noexcept;
+  bool empty() const noexcept { return writes.empty() && events.empty() && plans.empty(); }
+};
+
+// Notices every write to the parameters from outside of the machine by comparing bit for bit, so
+// that no way in can be forgotten.
+class WriteWatch {
+ public:
+  explicit WriteWatch(const behaviors::Behavior& behavior) : known_(behavior.values) {}
+  // Just before the machine's tick: what differs from what is known goes to `writes`.
+  void find(std::span<const double> parameters, std::vector<ParameterWrite>& writes) noexcept;
+  // Just after it.
+  void remember(std::span<const double> parameters) noexcept;
+
+ private:
+  std::vector<double> known_;
+};
+
+}  // namespace footfall::engine

@@ -1,0 +1,36 @@
+// What a log keeps of how its run was set up, so that it can be replayed by itself: every file the
+// run was loaded from, and the settings of the control loop as JSON whose numbers are exact.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/control_loop.h"
+#include "engine/log_writer.h"
+
+namespace footfall::lab {
+
+struct LogSource;
+
+// The behavior's file, robot, scripts and model, the world's file, and all that these name: bases,
+// included models, meshes. As they are on the disk now; what is gone is left out.
+std::vector<engine::LogFile> source_files(const behaviors::Behavior& behavior,
+                                          const std::string& world_file);
+
+// JSON: paths, --set texts, settings of the loop.
+std::string setup_text(const behaviors::Behavior& behavior, const LogSource& source);
+
+// What setup_text() told.
+struct RunSetup {
+  std::string behavior_file, robot_file;  // absolute
+  std::vector<std::pair<std::string, std::string>> set;
+  engine::LoopSettings settings;
+};
+// Throws std::runtime_error with one sentence if the text is not of that kind.
+RunSetup read_setup(const std::string& text);
+
+// The linker's id of this program, hexadecimal; empty if it has none.
+std::string build_id();
+
+}  // namespace footfall::lab

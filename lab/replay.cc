@@ -1,0 +1,222 @@
+// The tick on logged inputs; see replay.h.
+#include "lab/replay.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "behaviors/loader.h"
+#include "engine/control_loop.h"
+#include "engine/tick_inputs.h"
+#include "lab/log_setup.h"
+
+namespace footfall::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder that is gone with its owner.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "footfall-replay-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("cannot create the temporary folder '" + name + "'");
+    }
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  // Where a file of the log is here: files that name each other relatively still find each other.
+  std::string place_of(const std::string& path) const {
+    return (path_ / fs::path("/" + path).lexically_normal().relative_path()).string();
+  }
+  void put(const LoggedFile& file) const {
+    const fs::path to = place_of(file.path);
+    fs::create_directories(to.parent_path());
+    std::ofstream out(to, std::ios::binary);
+    out << file.content;
+    if (!out.flush()) throw std::runtime_error("cannot write '" + to.string() + "'");
+  }
+
+ private:
+  fs::path path_;
+};
+
+// Gives what was read in the run; commands go nowhere.
+class LoggedHardware final : public hal::Hardware {
+ public:
+  explicit LoggedHardware(const LoggedInputs& inputs)
+      : inputs_(inputs), layout_(inputs.joints, inputs.contacts) {
+    if (layout_.columns() != static_cast<int>(inputs.columns.size())) {
+      throw std::runtime_error("the log's inputs are not of this program's kind");
+    }
+  }
+  std::string name() const override { return "replay"; }
+  void start() override { next_ = -1; }
+  bool read(hal::Sensors& sensors) noexcept override {
+    const std::int64_t last = inputs_.first_tick + inputs_.ticks() - 1;
+    const std::int64_t tick = std::clamp(next_++, inputs_.first_tick, last);
+    hal::Commands ignored;
+    return layout_.unpack(inputs_.row(tick), sensors, ignored);
+  }
+  void write(const hal::Commands&) noexcept override {}
+  void safe_stop() noexcept override {}
+
+ private:
+  const LoggedInputs& inputs_;
+  engine::InputLayout layout_;
+  std::int64_t next_ = -1;  // -1: what start() reads
+};
+
+std::unique_ptr<behaviors::Behavior> load(const RunSetup& setup, const std::string& file,
+                                          const TemporaryFolder& folder) {
+  core::Diagnostics diagnostics;
+  behaviors::LoadOptions options;
+  options.robot = folder.place_of(setup.robot_file);
+  options.set = setup.set;
+  auto behavior = behaviors::load_behavior(
+      file.empty() ? folder.place_of(setup.behavior_file) : file, options, diagnostics);
+  if (behavior == nullptr) throw std::runtime_error(diagnostics.to_string());
+  if (!behavior->has_robot) throw std::runtime_error(behavior->path + ": error: no robot to run");
+  return behavior;
+}
+
+// Where each of the log's values is in a behavior that may be another; -1: nowhere.
+std::vector<int> slot_map(const Log& log, const behaviors::Behavior& behavior) {
+  std::vector<int> map(log.parameter_values.size(), -1);
+  for (const LoggedParameter& logged : log.parameters) {
+    const int index = behavior.find_parameter(logged.name);
+    if (index < 0) continue;
+    const behaviors::ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(index)];
+    for (int k = 0; k < std::min(logged.size, info.size); ++k) {
+      map[static_cast<std::size_t>(logged.slot + k)] = info.slot + k;
+    }
+  }
+  return map;
+}
+
+engine::LoopSettings replay_settings(const RunSetup& setup) {
+  engine::LoopSettings settings = setup.settings;
+  settings.run_scripts = false;
+  return settings;
+}
+
+bool same(const behaviors::PlanAnswer& a, const behaviors::PlanAnswer& b) {
+  return a.planner == b.planner && a.sequence == b.sequence && a.ok == b.ok &&
+         std::memcmp(a.target.data(), b.target.data(), sizeof a.target) == 0 &&
+         std::memcmp(a.predicted_pos.data(), b.predicted_pos.data(), sizeof a.predicted_pos) == 0 &&
+         std::memcmp(a.predicted_vel.data(), b.predicted_vel.data(), sizeof a.predicted_vel) == 0 &&
+         std::memcmp(&a.extension, &b.extension, sizeof a.extension) == 0;
+}
+
+}  // namespace
+
+struct Replay::Impl {
+  Impl(const Log& l, const std::string& behavior_file)
+      : log(l), setup(read_setup(l.setup)), hardware(l.inputs) {
+    if (log.inputs.ticks() == 0) {
+      throw std::runtime_error("the log '" + log.path + "' has no inputs to replay");
+    }
+    for (const LoggedFile& file : log.files) folder.put(file);
+    behavior = load(setup, behavior_file, folder);
+    slots = slot_map(log, *behavior);
+    for (const std::string& name : log.event_names) events.push_back(behavior->find_event(name));
+    loop = std::make_unique<engine::ControlLoop>(*behavior, hardware, replay_settings(setup));
+    loop->play(trace);
+    loop->start();
+  }
+
+  void fill_trace() {
+    const std::int64_t tick = loop->ticks();
+    trace.clear();
+    for (; plan < log.plans.size() && log.plans[plan].tick <= tick; ++plan) {
+      const LoggedPlan& p = log.plans[plan];
+      if (p.planner < 0 || p.planner >= static_cast<int>(behavior->planners.size())) continue;
+      trace.plans.push_back(
+          {p.planner, p.sequence, p.ok, p.target, p.predicted_pos, p.predicted_vel, p.extension});
+    }
+    for (; edit < log.edits.size() && log.edits[edit].tick <= tick; ++edit) {
+      for (const auto& [slot, value] : log.edits[edit].writes) {
+        if (slot < 0 || slot >= static_cast<int>(slots.size())) continue;
+        const int here = slots[static_cast<std::size_t>(slot)];
+        if (here >= 0) trace.writes.push_back({here, value});
+      }
+      for (const int event : log.edits[edit].events) {
+        if (event < 0 || event >= static_cast<int>(events.size())) continue;
+        trace.events.push_back(events[static_cast<std::size_t>(event)]);
+      }
+    }
+  }
+
+  const Log& log;
+  TemporaryFolder folder;
+  RunSetup setup;
+  LoggedHardware hardware;
+  std::unique_ptr<behaviors::Behavior> behavior;
+  std::vector<int> slots, events;  // by the log's slot and event
+  engine::InputTrace trace;
+  std::unique_ptr<engine::ControlLoop> loop;
+  std::size_t plan = 0, edit = 0;  // the next of the log's
+};
+
+Replay::Replay(const Log& log, const std::string& behavior_file)
+    : impl_(std::make_unique<Impl>(log, behavior_file)) {}
+Replay::~Replay() = default;
+
+std::int64_t Replay::end() const {
+  return impl_->log.inputs.first_tick + impl_->log.inputs.ticks();
+}
+std::int64_t Replay::next() const { return impl_->loop->ticks(); }
+const behaviors::Behavior& Replay::behavior() const { return *impl_->behavior; }
+const engine::ControlLoop& Replay::loop() const { return *impl_->loop; }
+
+void Replay::tick(const std::function<void()>& after, const std::function<void()>& before_machine) {
+  impl_->fill_trace();
+  impl_->trace.inspect = before_machine;
+  impl_->loop->sense();
+  impl_->loop->compute();
+  if (after) after();
+  impl_->loop->actuate();
+}
+
+std::string Replay::state() const {
+  std::string names;
+  for (const int state : impl_->loop->machine().active_atomic()) {
+    if (!names.empty()) names += " ";
+    names += impl_->behavior->states[static_cast<std::size_t>(state)].path;
+  }
+  return names.empty() ? "-" : names;
+}
+
+std::vector<std::string> Replay::plan_differences() const {
+  std::vector<std::string> lines;
+  const auto& logged = impl_->trace.plans;
+  const auto& now = impl_->trace.planned;
+  for (const behaviors::PlanAnswer& then : logged) {
+    // Planners that were made to fail in the run answer nothing, or another time.
+    const auto found = std::ranges::find_if(now, [&](const behaviors::PlanAnswer& answer) {
+      return answer.planner == then.planner && answer.sequence == then.sequence;
+    });
+    if (found == now.end() || same(then, *found)) continue;
+    const auto text = [](const behaviors::PlanAnswer& plan) {
+      return fmt::format("({}, {}, {})", plan.target[0], plan.target[1], plan.target[2]);
+    };
+    const auto planner = static_cast<std::size_t>(then.planner);
+    lines.push_back(fmt::format("planner.{}: {} in the log, {} now",
+                                impl_->behavior->planners[planner].name, text(then), text(*found)));
+  }
+  return lines;
+}
+
+}  // namespace footfall::lab
