@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "apps/commands.h"
-#include "apps/report_command.h"
+#include "apps/log_argument.h"
 #include "core/text_check.h"
 #include "core/units.h"
 #include "lab/log_reader.h"
@@ -61,7 +61,7 @@ std::string json_of(const lab::LoggedEvent& event) {
 void print_events(const EventsOptions& options) {
   const double from = read_time(options.from, "--from", -std::numeric_limits<double>::infinity());
   const double to = read_time(options.to, "--to", std::numeric_limits<double>::infinity());
-  const lab::Log log = lab::read_log(log_path(options.log).string());
+  const lab::Log log = lab::read_log(log_path(options.log));
   check_kinds(options.kinds, log);
   if (!log.complete) fmt::print(stderr, "warning: the log was cut off; the events end there\n");
   for (const lab::LoggedEvent& event : log.events) {

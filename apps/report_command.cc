@@ -54,7 +54,7 @@ lab::Log read_part(const std::string& path, const ReportArguments& arguments) {
 }  // namespace
 
 int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
-  const std::filesystem::path path = log_path(arguments.log);
+  const std::filesystem::path path(log_path(arguments.log));
   int exit_code = 0;
   try {
     const lab::Log log = read_part(path.string(), arguments);

@@ -18,9 +18,6 @@ struct ReportArguments {
   bool static_plots = false;
 };
 
-// The log that LOG means: the file, or log.mcap in the folder.
-std::filesystem::path log_path(const std::string& argument);
-
 // Writes what is asked for and prints the paths on `out`; returns the exit code, see below.
 int write_report_files(const ReportArguments& arguments, std::FILE* out);
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace footfall {
 
 constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+constexpr std::size_t at(std::int64_t i) noexcept { return static_cast<std::size_t>(i); }  // ticks
 
 // The same for the length of a container.
 constexpr std::size_t extent(int n) noexcept { return static_cast<std::size_t>(n); }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core/index.h"
 #include "core/units.h"
 #include "engine/log_schema.h"
 #include "engine/proto_bytes.h"
@@ -16,8 +17,6 @@ namespace {
 constexpr std::int64_t kKeyBlocks = 20;       // every so many a block stands by itself
 constexpr double kWindow = 0.2;               // s around a highlight
 constexpr std::size_t kOtherMessage = 16384;  // more than any but a block takes
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 std::size_t block_bytes(std::size_t columns, int rows) {
   return columns + 64 + at(rows) * (sizeof(std::uint64_t) + 5);

@@ -11,6 +11,7 @@
 #include <exception>
 #include <thread>
 
+#include "core/index.h"
 #include "engine/log_encoder.h"
 #include "engine/proto_bytes.h"
 
@@ -36,8 +37,6 @@ std::string_view cut(std::string_view text) noexcept {
 int batch_ticks(std::int64_t rate_mhz) {
   return std::max(1, static_cast<int>(kBatchTime * static_cast<double>(rate_mhz) / 1e3));
 }
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <set>
+#include <string_view>
+#include <utility>
+
+#include "core/index.h"
 
 namespace footfall::lab {
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -29,7 +32,14 @@ class Comparison {
     events();
     edits();
     plans();
-    std::ranges::stable_sort(out_.differences, {}, &LogDifference::tick);
+    // Within a tick causes come first: what was measured, what came from outside, what was made of
+    // it.
+    const auto when = [](const LogDifference& d) {
+      constexpr std::string_view kCauses[] = {"input", "edit", "plan"};
+      const auto* cause = std::ranges::find(kCauses, std::string_view(d.kind));
+      return std::pair(d.tick, cause - std::begin(kCauses));
+    };
+    std::ranges::stable_sort(out_.differences, {}, when);
     return std::move(out_);
   }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "core/index.h"
 #include "engine/column_codec.h"
 #include "engine/log_encoder.h"
 #include "lab/mcap_reader.h"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr int kMaxRows = 1 << 16;          // of a block: far above what the writer makes
 constexpr std::int64_t kKeptTicks = 8192;  // whose inputs rows may refer to
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 std::vector<std::string> texts_of(const std::string& json) {
   const auto list = nlohmann::json::parse(json, nullptr, false);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "behaviors/behavior.h"
+#include "core/index.h"
 #include "engine/control_loop.h"
 #include "engine/tick_inputs.h"
 #include "lab/replay.h"
@@ -15,8 +16,6 @@ namespace {
 
 constexpr std::size_t kMostLines = 12;
 constexpr std::int64_t kFollow = 3000;  // ticks in which a difference is looked for in the floats
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);

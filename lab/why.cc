@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "behaviors/guard_terms.h"
+#include "core/index.h"
 #include "engine/control_loop.h"
 
 namespace footfall::lab {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // One transition out of an active state, as it stood when the tick began.
 struct Candidate {
