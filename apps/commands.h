@@ -35,6 +35,7 @@ void add_fmt_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app, int& exit_code);
 void add_new_command(CLI::App& app, int& exit_code);
 void add_test_command(CLI::App& app, int& exit_code);
+void add_sweep_command(CLI::App& app, int& exit_code);
 
 // Folders that hold robots/, behaviors/library/ and sim/worlds/: the working folder, those of
 // FOOTFALL_PATH (colons between), the source tree, the installed data.
