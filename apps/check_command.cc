@@ -9,6 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
+#include "apps/sweep_setup.h"
 #include "behaviors/physics_check.h"
 #include "lab/scenario_loader.h"
 #include "lab/suite_files.h"
@@ -96,10 +97,8 @@ struct Kind {
   void (*check)(const std::string& path, core::Diagnostics& diagnostics);
 };
 constexpr Kind kKinds[] = {
-    {"behavior", check_behavior},
-    {"robot", check_robot},
-    {"world", check_world},
-    {"scenario", check_scenario},
+    {"behavior", check_behavior}, {"robot", check_robot},      {"world", check_world},
+    {"scenario", check_scenario}, {"sweep", check_sweep_file},
 };
 
 void check_file(const std::string& file, const CheckOptions& options,
@@ -175,11 +174,11 @@ int check(const CheckOptions& options) {
 void add_check_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand(
-      "check", "Checks behavior, robot, world and scenario files without running them");
+      "check", "Checks behavior, robot, world, scenario and sweep files without running them");
   command
-      ->add_option(
-          "FILE", options->files,
-          "Behavior files or names, robot, world and scenario files; - for a behavior on stdin")
+      ->add_option("FILE", options->files,
+                   "Behavior files or names, robot, world, scenario and sweep files; - for a "
+                   "behavior on stdin")
       ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
   command->add_flag("--json", options->json, "One JSON object with every problem");

@@ -5,9 +5,11 @@
 
 #include "apps/commands.h"
 #include "apps/report_command.h"
+#include "lab/sweep_session.h"
 #include "lab/version.h"
 
 int main(int argc, char** argv) {
+  footfall::lab::die_with_parent();
   CLI::App app{
       "Footfall executes behaviors for legged robots.\n"
       "Exit codes: 0 good, 1 the robot fell or a test failed, 2 the input is wrong, "
@@ -18,6 +20,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   footfall::apps::add_run_command(app, exit_code);
   footfall::apps::add_test_command(app, exit_code);
+  footfall::apps::add_sweep_command(app, exit_code);
   footfall::apps::add_check_command(app, exit_code);
   footfall::apps::add_trace_command(app, exit_code);
   footfall::apps::add_signals_command(app, exit_code);

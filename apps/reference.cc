@@ -28,7 +28,7 @@ itself reads, so nothing is missing and nothing is made up. [behaviors.md](behav
 [editor.md](editor.md) brings these tables into an editor.
 
 [Values](#values) · [Behavior files](#behavior-files) · [Task types](#task-types) · [Expressions](#expressions) ·
-[Events](#events) · [Faults](#faults) · [Signals](#signals) · [Robot files](#robot-files) · [World files](#world-files)
+[Events](#events) · [Faults](#faults) · [Signals](#signals) · [Robot files](#robot-files) · [World files](#world-files) · [Sweep files](#sweep-files)
 
 In the tables, **bold** keys are needed; *otherwise* is what holds without the key. `NAME` stands for a name of your own.
 

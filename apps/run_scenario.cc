@@ -19,7 +19,7 @@ namespace {
 
 // What the scenario says itself.
 void refuse_options(const RunOptions& options) {
-  constexpr std::array kSaid = {"--robot", "--world", "--for",  "--steps",        "--set",
+  constexpr std::array kSaid = {"--robot", "--world", "--for",  "--steps",
                                 "--push",  "--goal",  "--film", "--goal-velocity"};
   for (const std::string& given : options.given) {
     if (std::ranges::find(kSaid, given) == kSaid.end()) continue;
@@ -29,8 +29,8 @@ void refuse_options(const RunOptions& options) {
 
 lab::ScenarioDescription load_checked(const RunOptions& options) {
   core::Diagnostics diagnostics;
-  lab::ScenarioDescription scenario =
-      lab::load_scenario(options.behavior, {search_path()}, diagnostics);
+  const lab::ScenarioOptions how = {search_path(), split_settings(options.set, diagnostics)};
+  lab::ScenarioDescription scenario = lab::load_scenario(options.behavior, how, diagnostics);
   print_diagnostics(diagnostics);
   if (diagnostics.has_errors()) throw InputError("");
   if (!scenario.behavior->has_robot) {

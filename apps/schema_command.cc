@@ -9,13 +9,15 @@
 #include "apps/reference.h"
 #include "behaviors/language.h"
 #include "lab/scenario_keys.h"
+#include "lab/sweep_keys.h"
 #include "model/robot_keys.h"
 #include "sim/world_keys.h"
 
 namespace footfall::apps {
 
 std::vector<const core::FileTable*> file_tables() {
-  return {&behaviors::kBehaviorFile, &model::kRobotFile, &sim::kWorldFile, &lab::kScenarioFile};
+  return {&behaviors::kBehaviorFile, &model::kRobotFile, &sim::kWorldFile, &lab::kScenarioFile,
+          &lab::kSweepFile};
 }
 
 void add_schema_command(CLI::App& app, int& exit_code) {

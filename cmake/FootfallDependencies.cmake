@@ -12,6 +12,7 @@ find_package(yaml-cpp REQUIRED)               # target `yaml-cpp`
 find_package(fmt REQUIRED)                    # fmt::fmt
 find_package(nlohmann_json REQUIRED)          # nlohmann_json::nlohmann_json
 find_package(Protobuf REQUIRED)               # protobuf::libprotobuf
+find_package(SQLite3 REQUIRED)                # SQLite::SQLite3
 find_package(CLI11 REQUIRED)                  # CLI11::CLI11
 
 include(FootfallZstd)                         # footfall_zstd

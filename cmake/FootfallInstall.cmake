@@ -10,6 +10,7 @@ endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/behaviors/library ${PROJECT_SOURCE_DIR}/behaviors/scaffolds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/behaviors)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/worlds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/sim)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/lab/slurm DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/lab)
 install(EXPORT footfallTargets NAMESPACE footfall:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)
 set(FOOTFALL_DATA_DIR ${CMAKE_INSTALL_DATADIR}/footfall)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/footfallConfig.cmake.in

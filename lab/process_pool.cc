@@ -211,7 +211,10 @@ class Pool {
         if (stream->fd.open()) polled_.push_back({stream->fd.get(), POLLIN, 0});
       }
     }
-    ::poll(polled_.data(), polled_.size(), kPollPeriodMs);
+    // Both pipes closed: its end is a matter of microseconds.
+    const bool ending = std::ranges::any_of(
+        running_, [](const auto& child) { return !child->out.fd.open() && !child->err.fd.open(); });
+    ::poll(polled_.data(), polled_.size(), ending ? 1 : kPollPeriodMs);
     for (const auto& child : running_) {
       for (Stream* stream : {&child->out, &child->err}) {
         if (stream->drain()) child->result.truncated = true;

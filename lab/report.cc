@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "lab/report_assets.h"
+#include "lab/report_page.h"
 #include "lab/report_sections.h"
 
 namespace footfall::lab {
@@ -63,24 +64,6 @@ std::string section_html(const Section& section, const PlotFrame& frame, bool in
     out += "</div>";
   }
   return out + "</section>\n";
-}
-
-// The template with each {{name}} once replaced; what is put in is not searched again.
-std::string filled(std::string_view page,
-                   std::initializer_list<std::pair<std::string_view, std::string>> values) {
-  std::string out;
-  for (std::size_t at = 0; at < page.size();) {
-    const std::size_t open = page.find("{{", at);
-    const std::size_t close = open == std::string_view::npos ? open : page.find("}}", open);
-    if (close == std::string_view::npos) return out.append(page.substr(at));
-    out += page.substr(at, open - at);
-    const std::string_view name = page.substr(open + 2, close - open - 2);
-    for (const auto& [key, value] : values) {
-      if (key == name) out += value;
-    }
-    at = close + 2;
-  }
-  return out;
 }
 
 std::string joined(std::initializer_list<std::string_view> texts) {
@@ -144,15 +127,14 @@ std::string report_html(const Log& log, const ReportOptions& options) {
   if (!interactive) body = bands_svg(frame) + body;
   const std::string license =
       interactive ? joined({"/* uPlot\n", kUplotLicense, "*/\n"}) : std::string();
-  return filled(kReportHtml, {{"title", escape_html(title(log))},
-                              {"subtitle", subtitle(log)},
-                              {"nav", nav},
-                              {"body", body},
-                              {"css", interactive ? joined({kUplotCss, "\n", kReportCss})
-                                                  : std::string(kReportCss)},
-                              {"data", interactive ? plot_data(plots, frame) : "{}"},
-                              {"library", interactive ? joined({license, kUplotJs}) : ""},
-                              {"script", std::string(kReportJs)}});
+  return fill_page(
+      {.title = title(log),
+       .subtitle = subtitle(log),
+       .nav = nav,
+       .body = body,
+       .css = interactive ? joined({kUplotCss, "\n", kReportCss}) : std::string(kReportCss),
+       .data = interactive ? plot_data(plots, frame) : "{}",
+       .library = interactive ? joined({license, kUplotJs}) : ""});
 }
 
 void write_report(const Log& log, const std::string& path, const ReportOptions& options) {

@@ -71,7 +71,8 @@ bool find_robot(ScenarioContext& context, const YamlNode& root,
 
 // The behavior with its signals, and what of them only a run as a whole has.
 void load_named_behavior(ScenarioContext& context, const YamlNode& root,
-                         const std::vector<std::string>& search) {
+                         const ScenarioOptions& given) {
+  const std::vector<std::string>& search = given.search;
   ScenarioDescription& scenario = context.scenario;
   std::string robot;
   const bool has_robot = find_robot(context, root, search, robot);
@@ -92,6 +93,7 @@ void load_named_behavior(ScenarioContext& context, const YamlNode& root,
   behaviors::LoadOptions options;
   options.search = search;
   options.robot = robot;
+  options.set = given.set;
   core::Diagnostics found;
   scenario.behavior = behaviors::load_behavior(scenario.behavior_path, options, found);
   take_errors(context, found);
@@ -258,7 +260,7 @@ ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions
   core::check_keys(root, kScenarioKeys, diagnostics);
   ScenarioContext context{scenario, diagnostics, nullptr, {}};
   read_head(context, root);
-  load_named_behavior(context, root, options.search);
+  load_named_behavior(context, root, options);
   load_bodies(context);
   if (const YamlNode* script = root.find("script")) load_script(context, *script);
   if (const YamlNode* expect = root.find("expect")) load_expectations(context, *expect);

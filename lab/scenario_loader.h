@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lab/scenario_description.h"
@@ -12,6 +13,8 @@ namespace footfall::lab {
 struct ScenarioOptions {
   // Folders holding robots/NAME/robot.yaml and behaviors/library/NAME.yaml.
   std::vector<std::string> search;
+  // NAME=VALUE of the behavior, as --set has them: instead of what its file says.
+  std::vector<std::pair<std::string, std::string>> set{};
 };
 
 // Whether a file's first key, or its base's, is `scenario`; false if it cannot be read.

@@ -1,0 +1,41 @@
+// Trees of YAML that no file says: for writing files, and for what options of the command line say.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "core/yaml.h"
+
+namespace footfall::lab {
+
+inline core::YamlNode yaml_scalar(std::string text, core::Mark mark = {}) {
+  core::YamlNode node;
+  node.kind = core::YamlNode::Kind::scalar;
+  node.scalar = std::move(text);
+  node.mark = mark;
+  return node;
+}
+
+inline core::YamlNode yaml_map(core::Mark mark = {}) {
+  core::YamlNode node;
+  node.kind = core::YamlNode::Kind::map;
+  node.mark = mark;
+  return node;
+}
+
+// A further entry, even beside one of the same key: readers report that.
+inline void yaml_add(core::YamlNode& map, const std::string& key, core::YamlNode value) {
+  const core::Mark mark = value.mark;
+  map.entries.push_back({key, mark, false, std::move(value)});
+}
+
+// The only entry of that key; returns its value.
+inline core::YamlNode& yaml_put(core::YamlNode& map, const std::string& key, core::YamlNode value) {
+  for (core::YamlEntry& entry : map.entries) {
+    if (entry.key == key) return entry.value = std::move(value);
+  }
+  yaml_add(map, key, std::move(value));
+  return map.entries.back().value;
+}
+
+}  // namespace footfall::lab
