@@ -31,7 +31,7 @@ class OptionReader {
     if (equals != std::string::npos && equals > 0) {
       return {trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1))};
     }
-    diagnostics_.error({diagnostics_.add_file(option), 0, 0}, "set",
+    diagnostics_.error({diagnostics_.add_file(option), 0, 0}, "expected",
                        fmt::format("expected NAME=VALUES, got '{}'", text));
     return {};
   }
