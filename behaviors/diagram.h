@@ -25,6 +25,8 @@ struct DiagramState {
   bool region = false;        // child of a parallel state
   int closed = 0;             // states that are inside but not drawn
   std::string origin;         // template that it was made from: `stride(stance: right_foot)`
+  std::vector<std::string> notes;    // of who draws it, below the name: time spent, say
+  std::string fill;                  // colour of an atomic state, `#rrggbb`; empty: as the others
   std::vector<std::string> control;  // `stack dual`, `releases left_foot over 24 ms`, ...
   std::vector<std::string> actions;  // `entry / mark step`, `tapped [t > 1 s] / raise go`, ...
 };

@@ -156,6 +156,7 @@ class DotWriter {
     } else if (info.region) {
       shape = ", style=\"rounded,filled,dashed\"";
     }
+    if (!info.fill.empty()) shape += fmt::format(", fillcolor=\"{}\"", info.fill);
     if (info.safe) shape += ", color=\"#a63232\"";
     out_ += fmt::format("{}s{} [label={}{}]\n", indent, s, label_html(info, info.name), shape);
   }

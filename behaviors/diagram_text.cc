@@ -34,7 +34,7 @@ std::vector<std::string> wrap_all(const std::vector<std::string>& lines, std::si
 }
 
 std::vector<std::string> details_of(const DiagramState& state, std::size_t width) {
-  std::vector<std::string> lines;
+  std::vector<std::string> lines = state.notes;
   if (state.safe) lines.emplace_back("safe: on a fault, and at the end");
   if (!state.origin.empty()) lines.push_back(state.origin);
   if (state.closed > 0) lines.push_back(fmt::format("... {} states inside", state.closed));
