@@ -11,11 +11,13 @@
 #include <string>
 
 #include "apps/log_argument.h"
+#include "apps/output_file.h"
 #include "apps/report_film.h"
 #include "core/units.h"
 #include "lab/log_reader.h"
 #include "lab/log_window.h"
 #include "lab/report.h"
+#include "lab/report_states.h"
 
 namespace footfall::apps {
 namespace {
@@ -37,18 +39,61 @@ double time_of(const char* option, const std::string& text, double otherwise) {
   return quantity->value;
 }
 
-// The log, or the part of it that is asked for.
-lab::Log read_part(const std::string& path, const ReportArguments& arguments) {
+// The part of a log that is asked for.
+lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   const double from = time_of("--from", arguments.from, -kEver);
   const double to = time_of("--to", arguments.to, kEver);
-  const lab::Log log = lab::read_log(path);
   if (arguments.from.empty() && arguments.to.empty()) return log;
   lab::Log part = lab::log_window(log, from, to);
   if (part.rows() == 0) {
-    throw std::runtime_error("--from, --to: '" + path + "' has nothing between these times");
+    throw std::runtime_error("--from, --to: '" + log.path + "' has nothing between these times");
   }
   return part;
+}
+
+// The diagram while the log has the rows around each transition.
+void draw_states(const lab::Log& log, lab::ReportOptions& options) {
+  try {
+    options.diagram_svg = run_program("dot", "-Tsvg", lab::state_graph(log), "graphviz");
+  } catch (const std::runtime_error& error) {
+    options.diagram_note = error.what();
+  }
+}
+
+// Several logs on one page.
+void write_comparison(const ReportArguments& arguments, std::FILE* stream) {
+  std::vector<std::string> names = {arguments.log};
+  names.insert(names.end(), arguments.more.begin(), arguments.more.end());
+  if (names.size() > lab::kMaxCompared) {
+    throw std::runtime_error("at most " + std::to_string(lab::kMaxCompared) + " logs on one page");
+  }
+  if (!arguments.strip.empty() || !arguments.film.empty()) {
+    throw std::runtime_error("--strip, --film: of one log, not of several");
+  }
+  std::vector<lab::Log> logs;
+  std::vector<lab::ComparedRun> runs;
+  for (const std::string& name : names) {
+    lab::Log log = read_whole_log(name);
+    runs.emplace_back().summary_json = text_beside(log_path(name), "summary.json");
+    if (!logs.empty()) {
+      runs.back().parting = lab::compare_logs(logs.front(), log);
+      log.inputs = {};
+      lab::keep_even_rows(log);
+    }
+    logs.push_back(std::move(log));
+  }
+  lab::keep_even_rows(logs.front());
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    logs[k] = part_of(std::move(logs[k]), arguments);
+    runs[k].log = &logs[k];
+  }
+  const std::string out =
+      arguments.out.empty()
+          ? (std::filesystem::path(log_path(arguments.log)).parent_path() / "compare.html").string()
+          : arguments.out;
+  lab::write_page(lab::compare_html(runs, arguments.static_plots), out);
+  std::fprintf(stream, "  report       %s\n", out.c_str());
 }
 
 }  // namespace
@@ -57,8 +102,14 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
   const std::filesystem::path path(log_path(arguments.log));
   int exit_code = 0;
   try {
-    const lab::Log log = read_part(path.string(), arguments);
+    if (!arguments.more.empty()) {
+      write_comparison(arguments, stream);
+      return 0;
+    }
+    lab::Log log = part_of(lab::read_log(path.string(), {.all_rows = true}), arguments);
     lab::ReportOptions options;
+    draw_states(log, options);
+    lab::keep_even_rows(log);
     options.summary_json = text_beside(path, "summary.json");
     options.timing_json = text_beside(path, "timing.json");
     options.static_plots = arguments.static_plots;
@@ -97,18 +148,21 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
 
 void add_report_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command =
-      app.add_subcommand("report", "One self-contained HTML page from the log of a run");
+  CLI::App* command = app.add_subcommand(
+      "report", "One self-contained HTML page from the log of a run, or of several side by side");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
+  command->add_option("OTHER", arguments->more, "further logs, compared with the first");
   command->add_option("-o,--output", arguments->out,
-                      "the page (default: report.html beside the log)");
+                      "the page (default: report.html beside the log, compare.html for several)");
   command->add_option("--from", arguments->from, "only from this time in the run, e.g. 12.3s");
   command->add_option("--to", arguments->to, "only up to this time");
   command->add_option("--strip", arguments->strip, "write the film strip as PNG, too");
   command->add_option("--film", arguments->film, "write the run as MP4 (needs ffmpeg)");
   command->add_flag("--no-strip", arguments->no_strip, "a page without pictures of the robot");
   command->add_flag("--static", arguments->static_plots, "plots as SVG, without script");
-  command->footer("Example: footfall report out/demo -o report.html --strip strip.png");
+  command->footer(
+      "Example: footfall report out/demo -o report.html --strip strip.png\n"
+      "         footfall report out/before out/after");
   command->callback(
       [arguments, &exit_code] { exit_code = write_report_files(*arguments, stdout); });
 }

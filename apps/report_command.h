@@ -5,15 +5,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace footfall::apps {
 
 struct ReportArguments {
-  std::string log;       // log.mcap, or the folder it is in
-  std::string out;       // default: report.html beside the log
-  std::string strip;     // a PNG besides the page
-  std::string film;      // an MP4
-  std::string from, to;  // times in the run, e.g. `12.3s`; empty: its beginning, its end
+  std::string log;                // log.mcap, or the folder it is in
+  std::vector<std::string> more;  // other logs: all on one page
+  std::string out;                // default: report.html beside the log; with others compare.html
+  std::string strip;              // a PNG besides the page
+  std::string film;               // an MP4
+  std::string from, to;           // times in the run, e.g. `12.3s`; empty: its beginning, its end
   bool no_strip = false;
   bool static_plots = false;
 };

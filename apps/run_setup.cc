@@ -186,6 +186,7 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
   source.world = world.name;
   source.backend = options.backend;
   source.world_file = world.path;
+  if (options.backend == "mujoco") source.friction = world.friction;
   source.settings = loop_settings(options, world);
   core::Diagnostics ignored;  // they were loaded
   source.set = split_settings(options.set, ignored);

@@ -2,56 +2,19 @@
 #include "lab/replay.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "behaviors/loader.h"
 #include "engine/control_loop.h"
 #include "engine/tick_inputs.h"
+#include "lab/log_folder.h"
 #include "lab/log_setup.h"
 
 namespace footfall::lab {
 namespace {
-
-namespace fs = std::filesystem;
-
-// A folder that is gone with its owner.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "footfall-replay-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("cannot create the temporary folder '" + name + "'");
-    }
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  // Where a file of the log is here: files that name each other relatively still find each other.
-  std::string place_of(const std::string& path) const {
-    return (path_ / fs::path("/" + path).lexically_normal().relative_path()).string();
-  }
-  void put(const LoggedFile& file) const {
-    const fs::path to = place_of(file.path);
-    fs::create_directories(to.parent_path());
-    std::ofstream out(to, std::ios::binary);
-    out << file.content;
-    if (!out.flush()) throw std::runtime_error("cannot write '" + to.string() + "'");
-  }
-
- private:
-  fs::path path_;
-};
 
 // Gives what was read in the run; commands go nowhere.
 class LoggedHardware final : public hal::Hardware {
@@ -80,7 +43,7 @@ class LoggedHardware final : public hal::Hardware {
 };
 
 std::unique_ptr<behaviors::Behavior> load(const RunSetup& setup, const std::string& file,
-                                          const TemporaryFolder& folder) {
+                                          const LogFolder& folder) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
   options.robot = folder.place_of(setup.robot_file);
@@ -124,11 +87,10 @@ bool same(const behaviors::PlanAnswer& a, const behaviors::PlanAnswer& b) {
 
 struct Replay::Impl {
   Impl(const Log& l, const std::string& behavior_file)
-      : log(l), setup(read_setup(l.setup)), hardware(l.inputs) {
+      : log(l), folder(l), setup(read_setup(l.setup)), hardware(l.inputs) {
     if (log.inputs.ticks() == 0) {
       throw std::runtime_error("the log '" + log.path + "' has no inputs to replay");
     }
-    for (const LoggedFile& file : log.files) folder.put(file);
     behavior = load(setup, behavior_file, folder);
     slots = slot_map(log, *behavior);
     for (const std::string& name : log.event_names) events.push_back(behavior->find_event(name));
@@ -160,7 +122,7 @@ struct Replay::Impl {
   }
 
   const Log& log;
-  TemporaryFolder folder;
+  LogFolder folder;
   RunSetup setup;
   LoggedHardware hardware;
   std::unique_ptr<behaviors::Behavior> behavior;

@@ -5,17 +5,13 @@
 
 #include <algorithm>
 #include <fstream>
-#include <initializer_list>
 #include <stdexcept>
 
-#include "lab/report_assets.h"
-#include "lab/report_page.h"
 #include "lab/report_sections.h"
 
 namespace footfall::lab {
 namespace {
 
-constexpr std::size_t kRunPoints = 6000;    // keeps a page of 100 curves below 5 MB
 constexpr std::size_t kZoomPoints = 12000;  // four steps, every tick
 constexpr std::size_t kZoomSteps = 4;
 
@@ -34,42 +30,13 @@ Section film_section(const ReportOptions& options) {
   if (!options.strip_png.empty()) {
     section.lead = "The last steps at equal times; arrows: forces of the ground on the feet.";
     section.html =
-        "<div class=\"strip\"><img alt=\"The robot at equal times over the run\" "
+        "<div class=\"strip\" tabindex=\"0\"><img alt=\"The robot at equal times over the run\" "
         "src=\"data:image/png;base64," +
         base64(options.strip_png.data(), options.strip_png.size()) + "\"></div>";
   } else if (!options.strip_note.empty()) {
     section.html = "<p class=\"note\">No pictures: " + escape_html(options.strip_note) + "</p>";
   }
   return section;
-}
-
-bool empty(const Section& section) {
-  return section.html.empty() && section.planes.empty() && section.plots.empty();
-}
-
-std::string section_html(const Section& section, const PlotFrame& frame, bool interactive) {
-  std::string out = fmt::format("<section id=\"{}\"><h2>{}</h2>", section.id, section.title);
-  if (!section.lead.empty()) out += "<p class=\"lead\">" + section.lead + "</p>";
-  out += section.html;
-  if (!section.planes.empty()) {
-    out += "<div class=\"figures planes\">";
-    for (const PlanePlot& plot : section.planes) out += plane_plot_svg(plot);
-    out += "</div>";
-  }
-  if (!section.plots.empty()) {
-    out += bands_legend(frame.bands) + "<div class=\"figures\">";
-    for (const TimePlot& plot : section.plots) {
-      out += interactive ? time_plot_html(plot) : time_plot_svg(plot, frame);
-    }
-    out += "</div>";
-  }
-  return out + "</section>\n";
-}
-
-std::string joined(std::initializer_list<std::string_view> texts) {
-  std::string out;
-  for (const std::string_view text : texts) out += text;
-  return out;
 }
 
 std::string subtitle(const Log& log) {
@@ -83,29 +50,38 @@ std::string subtitle(const Log& log) {
   return out;
 }
 
-// A behavior is known by its file's name.
-std::string title(const Log& log) {
-  std::string name = log.get("behavior", "run");
-  name = name.substr(name.find_last_of('/') + 1);
-  const std::size_t dot = name.rfind(".yaml");
-  return dot == std::string::npos ? name : name.substr(0, dot);
+Section state_section(const ReportOptions& options) {
+  Section section{"states", "State diagram", "", "", {}, {}};
+  if (!options.diagram_svg.empty()) {
+    section.lead =
+        "Time spent in each state, its share, and how often it was entered; the darker, the "
+        "longer.";
+    const std::size_t svg = std::min(options.diagram_svg.find("<svg"), options.diagram_svg.size());
+    section.html =
+        "<div class=\"diagram\" tabindex=\"0\" role=\"group\" aria-label=\"state "
+        "diagram\">" +
+        options.diagram_svg.substr(svg) + "</div>";
+  } else if (!options.diagram_note.empty()) {
+    section.html = "<p class=\"note\">No diagram: " + escape_html(options.diagram_note) + "</p>";
+  }
+  return section;
 }
 
 }  // namespace
 
-bool has_interactive_plots() { return !kUplotJs.empty(); }
-
 std::string report_html(const Log& log, const ReportOptions& options) {
   const bool interactive = has_interactive_plots() && !options.static_plots;
   const StateBands bands = state_bands(log);
-  const Grid run(log, 0, log.rows(), kRunPoints);
+  const Grid run(log, 0, log.rows(), run_points(log, 1));
   const Grid zoom(log, log.rows() == 0 ? 0 : zoom_begin(log), log.rows(), kZoomPoints);
-  const PlotFrame frame{run, zoom, bands};
+  const std::vector<PlotMark> marks = run_marks(log);
+  const PlotFrame frame{run, zoom, bands, marks};
 
   Section summary{"summary", "Summary", "", summary_html(log, options.summary_json), {}, {}};
   Section settings{"settings", "Settings", "", settings_html(log), {}, {}};
   const std::vector<Section> sections = {summary,
                                          film_section(options),
+                                         mark_section(log),
                                          path_section(log),
                                          phase_section(log),
                                          task_section(log),
@@ -113,34 +89,21 @@ std::string report_html(const Log& log, const ReportOptions& options) {
                                          torque_section(log),
                                          force_section(log),
                                          planner_section(log),
+                                         state_section(options),
                                          event_section(log),
                                          timing_section(options.timing_json),
                                          settings};
-  std::string nav, body;
-  std::vector<TimePlot> plots;
-  for (const Section& section : sections) {
-    if (empty(section)) continue;
-    nav += fmt::format("<a href=\"#{}\">{}</a>", section.id, section.title);
-    body += section_html(section, frame, interactive);
-    plots.insert(plots.end(), section.plots.begin(), section.plots.end());
-  }
-  if (!interactive) body = bands_svg(frame) + body;
-  const std::string license =
-      interactive ? joined({"/* uPlot\n", kUplotLicense, "*/\n"}) : std::string();
-  return fill_page(
-      {.title = title(log),
-       .subtitle = subtitle(log),
-       .nav = nav,
-       .body = body,
-       .css = interactive ? joined({kUplotCss, "\n", kReportCss}) : std::string(kReportCss),
-       .data = interactive ? plot_data(plots, frame) : "{}",
-       .library = interactive ? joined({license, kUplotJs}) : ""});
+  return page_html({run_title(log), subtitle(log), ""}, sections, frame, interactive);
 }
 
 void write_report(const Log& log, const std::string& path, const ReportOptions& options) {
+  write_page(report_html(log, options), path);
+}
+
+void write_page(const std::string& page, const std::string& path) {
   std::ofstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error("cannot write the report '" + path + "'");
-  file << report_html(log, options);
+  file << page;
   file.close();
   if (!file) throw std::runtime_error("cannot write the report '" + path + "'");
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/log_diff.h"
 #include "lab/log_reader.h"
 
 namespace footfall::lab {
@@ -15,6 +16,8 @@ struct ReportOptions {
   std::string timing_json;              // text of timing.json, may be empty
   std::vector<std::uint8_t> strip_png;  // film strip, may be empty
   std::string strip_note;               // why there is none, e.g. the renderer's error
+  std::string diagram_svg;              // state diagram, may be empty
+  std::string diagram_note;             // why there is none
   bool static_plots = false;            // SVG even where the plotting library is built in
 };
 
@@ -23,6 +26,19 @@ std::string report_html(const Log& log, const ReportOptions& options);
 
 // Writes it. Throws std::runtime_error with one sentence that names the path.
 void write_report(const Log& log, const std::string& path, const ReportOptions& options);
+
+// One of several runs in a comparison.
+struct ComparedRun {
+  const Log* log = nullptr;
+  std::string summary_json;  // may be empty
+  LogComparison parting;     // from the first run; of that one nothing
+};
+// Two to six runs on one page: figures side by side, where they part, curves over each other, the
+// marks of all. The first is what the others are compared with.
+std::string compare_html(const std::vector<ComparedRun>& runs, bool static_plots);
+inline constexpr std::size_t kMaxCompared = 6;
+// Throws as write_report().
+void write_page(const std::string& page, const std::string& path);
 
 // The plotting library is built in; else plots are SVG.
 bool has_interactive_plots();

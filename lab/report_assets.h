@@ -9,6 +9,7 @@ namespace footfall::lab {
 extern const std::string_view kReportHtml;  // the page with {{places}}
 extern const std::string_view kReportCss;
 extern const std::string_view kReportJs;
+extern const std::string_view kReportKeysJs;
 extern const std::string_view kUplotJs;  // empty without npm
 extern const std::string_view kUplotCss;
 extern const std::string_view kUplotLicense;

@@ -1,4 +1,4 @@
-// Sections of the report about control: tasks, posture, torques and forces over time.
+// Sections of the report about control: tasks, posture and torques over time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,22 +24,6 @@ std::string readable(const std::string& unit) {
 std::string unit_of(const Log& log, const std::string& name) {
   const int index = log.find(name);
   return index < 0 ? "" : readable(log.signals[static_cast<std::size_t>(index)].unit);
-}
-
-void add_curve(const Log& log, TimePlot& plot, const std::string& label, const std::string& hue,
-               const std::string& signal, bool dashed = false) {
-  const auto* values = log.values(signal);
-  if (values != nullptr) plot.curves.push_back({label, hue, *values, dashed});
-}
-
-// What was zero all the time was never active: a plot of it would only lengthen the page.
-void keep(Section& section, TimePlot plot) {
-  if (greatest(plot) > 0.0) section.plots.push_back(std::move(plot));
-}
-
-std::string spaced(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
 }
 
 // The name without its side: right_knee and left_knee are both "knee".
@@ -161,30 +145,6 @@ Section torque_section(const Log& log) {
   TimePlot step{"torque-step", "Largest torque step between neighbouring ticks", "N m", {}, false};
   add_curve(log, step, "torque step", "c3", "torque.step");
   keep(section, std::move(step));
-  return section;
-}
-
-Section force_section(const Log& log) {
-  Section section{"forces",
-                  "Contact forces",
-                  "Of the ground on the robot, z up; dashed: as the control law predicts it.",
-                  "",
-                  {},
-                  {}};
-  for (const std::string& foot : parts(log, "force.", ".z")) {
-    TimePlot plot{"force-" + foot, spaced(foot), "N", {}, false};
-    add_curve(log, plot, "z", "c0", "force." + foot + ".z");
-    add_curve(log, plot, "z, predicted", "c0", "force_cmd." + foot + ".z", true);
-    add_curve(log, plot, "x", "c1", "force." + foot + ".x");
-    add_curve(log, plot, "y", "c2", "force." + foot + ".y");
-    keep(section, std::move(plot));
-  }
-  for (const std::string& name : parts(log, "internal.", ".measured")) {
-    TimePlot plot{"internal-" + name, "Internal force, " + spaced(name), "N", {}, false};
-    add_curve(log, plot, "measured", "actual", "internal." + name + ".measured");
-    add_curve(log, plot, "reference", "plan", "internal." + name + ".reference", true);
-    keep(section, std::move(plot));
-  }
   return section;
 }
 

@@ -10,7 +10,23 @@ namespace {
 
 constexpr double kMinSwing = 0.06;  // s without contact that make a swing ("How we count" a step)
 
-// Paths of the states, by the value of the signal `state`.
+std::string last_part(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? path : path.substr(dot + 1);
+}
+
+std::array<const std::vector<float>*, 2> xy(const Log& log, const std::string& stem) {
+  return {log.values(stem + ".x"), log.values(stem + ".y")};
+}
+
+// The column that says whether a foot carries: what the control law counts on, else its switch.
+const std::vector<float>* support_of(const Log& log, const std::string& foot) {
+  const auto* support = log.values("support." + foot);
+  return support != nullptr ? support : log.values("contact." + foot);
+}
+
+}  // namespace
+
 std::vector<std::string> state_paths(const Log& log) {
   std::vector<std::string> paths;
   const auto list = nlohmann::json::parse(log.get("states", "[]"), nullptr, false);
@@ -32,23 +48,6 @@ std::vector<std::string> state_paths(const Log& log) {
   }
   return paths;
 }
-
-std::string last_part(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? path : path.substr(dot + 1);
-}
-
-std::array<const std::vector<float>*, 2> xy(const Log& log, const std::string& stem) {
-  return {log.values(stem + ".x"), log.values(stem + ".y")};
-}
-
-// The column that says whether a foot carries: what the control law counts on, else its switch.
-const std::vector<float>* support_of(const Log& log, const std::string& foot) {
-  const auto* support = log.values("support." + foot);
-  return support != nullptr ? support : log.values("contact." + foot);
-}
-
-}  // namespace
 
 StateBands state_bands(const Log& log) {
   StateBands bands;

@@ -23,6 +23,8 @@ struct StateBands {
   std::vector<std::string> names;  // last parts of the paths: both images of a mirror share one
   std::vector<StateInterval> intervals;
 };
+// Paths of the states, by the value of the signal `state`.
+std::vector<std::string> state_paths(const Log& log);
 // By the signal `state` and the run's `states`; empty without them.
 StateBands state_bands(const Log& log);
 // Path of the state that is active in a row, "" if unknown.

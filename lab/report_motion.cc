@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lab/report_sections.h"
 
@@ -77,6 +78,23 @@ struct PortraitColumns {
   bool valid() const { return x && y && vx && vy; }
 };
 
+// What is said of one step beside the portraits.
+struct StepFact {
+  double time = 0.0;  // s, of its end
+  std::string text;
+};
+
+// Picks one step of the portraits; report_keys.js.
+std::string step_slider(const std::vector<StepFact>& facts) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const StepFact& fact : facts) list.push_back({{"t", fact.time}, {"text", fact.text}});
+  return fmt::format(
+      "<p class=\"steps\"><label for=\"step\">step</label><input type=\"range\" id=\"step\" "
+      "min=\"0\" max=\"{}\" value=\"0\" data-facts=\"{}\"><output id=\"step-facts\" for=\"step\">"
+      "</output><button id=\"step-go\">plots there</button></p>",
+      facts.size(), escape_html(list.dump()));
+}
+
 }  // namespace
 
 Section path_section(const Log& log) {
@@ -136,8 +154,8 @@ Section phase_section(const Log& log) {
   const std::vector<PlannerColumns> plans = planners(log);
   PlanePlot forward{"phase-x", "Forward", "x - foot, m", "velocity, m/s", {}, false, 0.02};
   PlanePlot sideways{"phase-y", "Sideways", "y - foot, m", "velocity, m/s", {}, false, 0.02};
-  std::array<PlaneCurve, 2> predicted;
-  predicted.fill({"predicted", "plan", Mark::cross, {}, 0.9});
+  bool any_predicted = false;
+  std::vector<StepFact> facts;
   std::vector<std::string> named;
   for (const SupportPhase& phase : phases) {
     const auto* foot_x = log.values("point." + phase.foot + ".x");
@@ -149,7 +167,8 @@ Section phase_section(const Log& log) {
     std::string label = "on the " + phase.foot;
     std::ranges::replace(label, '_', ' ');
     const std::string colour = !feet.empty() && phase.foot == feet[0] ? "c1" : "c2";
-    const PlaneCurve empty{first ? label : "", colour, Mark::line, {}, 0.55};
+    const int step = static_cast<int>(facts.size()) + 1;
+    const PlaneCurve empty{first ? label : "", colour, Mark::line, {}, 0.55, -1, step};
     std::array<PlaneCurve, 2> curve = {empty, empty};
     const std::size_t stride = (phase.end - phase.begin) / kPortraitPoints + 1;
     for (std::size_t row = phase.begin; row < phase.end; row += stride) {
@@ -161,15 +180,30 @@ Section phase_section(const Log& log) {
     forward.curves.push_back(std::move(curve[0]));
     sideways.curves.push_back(std::move(curve[1]));
     const std::size_t end = phase.end - 1;
+    facts.push_back({log.time[end], fmt::format("{} of {}, on the {} until {:.3f} s", step,
+                                                phases.size(), phase.foot, log.time[end])});
     if (plans.empty() || !plans[0].predicts()) continue;
     const Point2 p = {at(*plans[0].position[0], end), at(*plans[0].position[1], end)};
     if (p == Point2{0.0, 0.0}) continue;  // nothing was planned yet
     const Point2 q = turned(p[0] - at(*foot_x, end), p[1] - at(*foot_y, end), yaw);
     const Point2 v = turned(at(*plans[0].velocity[0], end), at(*plans[0].velocity[1], end), yaw);
-    for (std::size_t k = 0; k < 2; ++k) predicted[k].points.push_back({q[k], v[k]});
+    for (std::size_t k = 0; k < 2; ++k) {
+      PlaneCurve& to = k == 0 ? forward.curves.emplace_back() : sideways.curves.emplace_back();
+      to = {any_predicted ? "" : "predicted for the switch",
+            "plan",
+            Mark::cross,
+            {{q[k], v[k]}},
+            0.9,
+            -1,
+            step};
+    }
+    any_predicted = true;
+    const Point2 reached =
+        turned(at(*columns.x, end) - at(*foot_x, end), at(*columns.y, end) - at(*foot_y, end), yaw);
+    facts.back().text += fmt::format("; there, from the prediction: x {:+.1f} mm, y {:+.1f} mm",
+                                     1e3 * (reached[0] - q[0]), 1e3 * (reached[1] - q[1]));
   }
-  forward.curves.push_back(predicted[0]);
-  sideways.curves.push_back(predicted[1]);
+  section.html = step_slider(facts);
   section.planes = {std::move(forward), std::move(sideways)};
   return section;
 }

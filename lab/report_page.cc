@@ -31,7 +31,8 @@ std::string fill_page(const ReportPage& page) {
                                      {"footer", escape_html(page.footer)},
                                      {"data", page.data},
                                      {"library", page.library},
-                                     {"script", std::string(kReportJs)}});
+                                     {"script", std::string(kReportJs)},
+                                     {"keys", std::string(kReportKeysJs)}});
 }
 
 }  // namespace footfall::lab

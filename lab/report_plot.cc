@@ -105,8 +105,9 @@ std::string time_plot_html(const TimePlot& plot) {
   const std::string unit = display_unit(plot.unit, greatest(plot)).second;
   return fmt::format(
       "<figure class=\"plot\"><figcaption>{}<small>{}</small></figcaption>"
-      "<div class=\"chart\" data-plot=\"{}\"></div></figure>\n",
-      escape_html(plot.title), unit.empty() ? "" : escape_html(unit), escape_html(plot.id));
+      "<div class=\"chart\" data-plot=\"{}\" role=\"group\" aria-label=\"{}\"></div></figure>\n",
+      escape_html(plot.title), unit.empty() ? "" : escape_html(unit), escape_html(plot.id),
+      escape_html(plot.title));
 }
 
 std::string plot_data(const std::vector<TimePlot>& plots, const PlotFrame& frame) {
@@ -119,6 +120,10 @@ std::string plot_data(const std::vector<TimePlot>& plots, const PlotFrame& frame
         {{"name", frame.bands.names[i]},
          {"colour", fmt::format("s{}", band_colour(frame.bands.names[i], static_cast<int>(i)))}});
   }
+  data["marks"] = nlohmann::json::array();
+  for (const PlotMark& mark : frame.marks) {
+    data["marks"].push_back({std::round(mark.time * 1e4) / 1e4, mark.kind});
+  }
   data["plots"] = nlohmann::json::object();
   for (const TimePlot& plot : plots) {
     const auto [scale, unit] = display_unit(plot.unit, greatest(plot));
@@ -127,6 +132,7 @@ std::string plot_data(const std::vector<TimePlot>& plots, const PlotFrame& frame
       item["curves"].push_back({{"label", curve.label},
                                 {"colour", curve.colour},
                                 {"dashed", curve.dashed},
+                                {"run", curve.run},
                                 {"y", base64_of(frame.of(plot).thin(curve.values, scale))}});
     }
     data["plots"][plot.id] = std::move(item);

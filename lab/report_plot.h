@@ -17,6 +17,7 @@ struct Curve {
   std::string colour;         // a variable of the style sheet: c0 .. c5, actual, plan
   std::vector<float> values;  // on the log's rows, in SI
   bool dashed = false;
+  int run = -1;  // of several logs, which
 };
 
 // Curves over time with the state bands behind them.
@@ -37,6 +38,8 @@ struct PlaneCurve {
   Mark mark = Mark::line;
   std::vector<Point2> points;
   double opacity = 1.0;
+  int run = -1;  // of several logs, which
+  int step = 0;  // of a phase portrait, which, from 1 on
 };
 
 // Curves in a plane, always SVG.
@@ -48,11 +51,18 @@ struct PlanePlot {
   double least_span = 0.0;  // of each axis, so that noise is not blown up
 };
 
-// The two time axes of a page and the bands behind them.
+// Something that reached the run, or went wrong in it: a line in every plot.
+struct PlotMark {
+  double time = 0.0;  // s
+  std::string kind;   // edit, push, hold, inject, fault
+};
+
+// The two time axes of a page, and what is behind and over all curves.
 struct PlotFrame {
   const Grid& run;
   const Grid& zoom;
   const StateBands& bands;
+  const std::vector<PlotMark>& marks;
   const Grid& of(const TimePlot& plot) const { return plot.zoom ? zoom : run; }
 };
 

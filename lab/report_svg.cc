@@ -136,8 +136,12 @@ std::string plane_curve(const PlaneCurve& curve, const PlaneMap& map) {
     }
   }
   if (path.empty()) return "";
-  return fmt::format("<path class=\"{}\" style=\"stroke:var(--{})\" opacity=\"{:.2f}\" d=\"{}\"/>",
-                     curve.mark == Mark::dot ? "dots" : "curve", curve.colour, curve.opacity, path);
+  std::string tags;
+  if (curve.run >= 0) tags += fmt::format(" data-run=\"{}\"", curve.run);
+  if (curve.step > 0) tags += fmt::format(" data-step=\"{}\"", curve.step);
+  return fmt::format(
+      "<path class=\"{}\"{} style=\"stroke:var(--{})\" opacity=\"{:.2f}\" d=\"{}\"/>",
+      curve.mark == Mark::dot ? "dots" : "curve", tags, curve.colour, curve.opacity, path);
 }
 
 std::string rectangles(const Grid& grid, const StateBands& bands) {

@@ -251,13 +251,16 @@ Section event_section(const Log& log) {
         "<label><input type=\"checkbox\" checked data-kind=\"{0}\">{0}</label>", escape_html(kind));
   }
   section.html +=
-      "</p><div class=\"scroll\"><table class=\"events\"><thead><tr><th>time, s</th>"
+      "</p><div class=\"scroll moments\" tabindex=\"0\" role=\"group\" "
+      "aria-label=\"events\"><table "
+      "class=\"events\"><thead><tr><th>time, s</th>"
       "<th>kind</th><th>name</th><th>detail</th></tr></thead><tbody>";
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (events.size() > kMaxEvents && i == kMaxEvents / 2) i = events.size() - kMaxEvents / 2;
     const LoggedEvent& event = events[i];
     section.html += fmt::format(
-        "<tr data-kind=\"{1}\"><td>{0:.3f}</td><td>{1}</td><td>{2}</td><td>{3}</td></tr>",
+        "<tr data-kind=\"{1}\" data-t=\"{0:.4f}\" "
+        "data-what=\"{2}\"><td>{0:.3f}</td><td>{1}</td><td>{2}</td><td>{3}</td></tr>",
         event.time, escape_html(event.kind), escape_html(event.name), escape_html(event.detail));
   }
   section.html += "</tbody></table></div>";

@@ -166,6 +166,9 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
                 {"states", nlohmann::json(states).dump()},
                 {"contacts", nlohmann::json(header.contacts).dump()},
                 {"joints", nlohmann::json(header.joints).dump()}};
+  if (source.friction > 0.0) {
+    header.run.emplace_back("friction", fmt::format("{:g}", source.friction));
+  }
   header.setup = setup_text(behavior, source);
   header.events = behavior.events;
   header.files = source_files(behavior, source.world_file);

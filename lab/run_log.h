@@ -47,6 +47,7 @@ struct LogSource {
   engine::LoopSettings settings;
   std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE
   std::string command;                                   // as it was typed, for people
+  double friction = 0.0;                                 // of the ground; 0: unknown
   int row_every = 6;                                     // ticks; 1: derived signals of all ticks
 };
 

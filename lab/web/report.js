@@ -1,5 +1,6 @@
-// Fills the report's plots (uPlot, one shared time axis each for the run and its last steps), filters
-// its events, and marks where the reader is. Without the plotting library the plots are SVG already.
+// Fills the report's plots (uPlot, one shared time axis each for the run and its last steps), and marks
+// where the reader is. Without the plotting library the plots are SVG already. What moves the plots by
+// keys, buttons and lists is in report_keys.js, through `report`.
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -32,15 +33,14 @@
     };
   }
 
-  // A zoom in one plot is a zoom in all of the same axis.
-  let syncing = false;
+  // A zoom in one plot is a zoom in all of the same axis. The library tells of a change some time after
+  // it was asked for, so only what is not known yet goes on to the others.
+  const same = (a, b) => Math.abs(a.min - b.min) < 1e-9 && Math.abs(a.max - b.max) < 1e-9;
   function follow(grid) {
     return (u, key) => {
-      if (key !== "x" || syncing || u.status !== 1) return;
-      syncing = true;
-      grid.range = { min: u.scales.x.min, max: u.scales.x.max };
-      for (const other of grid.plots) if (other !== u) other.setScale("x", grid.range);
-      syncing = false;
+      const { min, max } = u.scales.x;
+      if (key !== "x" || u.status !== 1 || same({ min, max }, grid.range || whole(grid))) return;
+      setRange(grid, same({ min, max }, whole(grid)) ? null : { min, max }, u);
     };
   }
 
@@ -50,6 +50,40 @@
     const found = grid.bands.find(b => time >= b[0] && time <= b[1]);
     return found ? data.states[found[2]].name : "";
   }
+
+  // What reached the run: a line for each, one a pixel at most.
+  const marks = data.marks || [];
+  const markColours = { edit: "link", push: "warn", hold: "warn", inject: "warn", fault: "bad" };
+  function drawMarks(u) {
+    const { left, top, width, height } = u.bbox;
+    const { min, max } = u.scales.x;
+    const ratio = devicePixelRatio, last = {};
+    u.ctx.save();
+    u.ctx.lineWidth = ratio;
+    u.ctx.setLineDash([3 * ratio, 3 * ratio]);
+    for (const [time, kind] of marks) {
+      if (time < min || time > max) continue;
+      const x = Math.round(u.valToPos(time, "x", true));
+      if (x < left || x > left + width || x - (last[kind] ?? -9) < 4 * ratio) continue;
+      last[kind] = x;
+      u.ctx.strokeStyle = colour(markColours[kind] || "warn");
+      // Faults may be many: a tick at the top says enough.
+      const end = kind === "fault" ? top + 12 * ratio : top + height;
+      u.ctx.beginPath();
+      u.ctx.moveTo(x, top);
+      u.ctx.lineTo(x, end);
+      u.ctx.stroke();
+    }
+    u.ctx.restore();
+  }
+
+  // All of an axis at once; null: the whole of it.
+  function setRange(grid, range, but) {
+    grid.range = range;
+    for (const u of grid.plots) if (u !== but) u.setScale("x", range || whole(grid));
+  }
+  const whole = grid => ({ min: grid.time[0], max: grid.time[grid.time.length - 1] });
+  const runs = {};  // hidden ones, by number
 
   function options(plot, grid, width) {
     const axis = { stroke: colour("dim"), font: "11.5px system-ui, sans-serif", ticks: { show: false },
@@ -65,12 +99,12 @@
       series: [
         { label: "time", value: (u, t) => (t == null ? "–" : t.toFixed(3) + " s " + stateAt(grid, t)) },
         ...plot.curves.map(c => ({ label: c.label, stroke: colour(c.colour), width: c.dashed ? 1 : 1.5,
-          dash: c.dashed ? [5, 4] : undefined, points: { show: false }, spanGaps: false,
+          dash: c.dashed ? [5, 4] : undefined, show: !runs[c.run], points: { show: false }, spanGaps: false,
           value: (u, v) => digits(v) })),
       ],
       legend: { markers: { width: 2, fill: "transparent",
         dash: (u, i) => (i > 0 && plot.curves[i - 1].dashed ? "dashed" : "solid") } },
-      hooks: { drawClear: [drawBands(grid)], setScale: [follow(grid)] },
+      hooks: { drawClear: [drawBands(grid)], draw: [drawMarks], setScale: [follow(grid)] },
     };
   }
 
@@ -87,7 +121,8 @@
   }
 
   const places = [...document.querySelectorAll("[data-plot]")];
-  if (window.uPlot && places.length) {
+  for (const place of places) place.tabIndex = 0;
+  if (globalThis.uPlot && places.length) {
     // Drawn when they come near, and again when the width or the colours change.
     const near = new IntersectionObserver(entries => {
       for (const entry of entries) {
@@ -106,14 +141,6 @@
       places.filter(place => place.uplot).forEach(draw));
   }
 
-  for (const box of document.querySelectorAll(".filter input")) {
-    box.addEventListener("change", () => {
-      for (const row of document.querySelectorAll(".events tr[data-kind]")) {
-        if (row.dataset.kind === box.dataset.kind) row.hidden = !box.checked;
-      }
-    });
-  }
-
   // The entry of the section that fills the upper part of the window is marked.
   const links = new Map([...document.querySelectorAll("nav a")].map(a => [a.getAttribute("href").slice(1), a]));
   const seen = new IntersectionObserver(entries => {
@@ -128,4 +155,19 @@
     }
   }, { rootMargin: "-12% 0px -80% 0px" });
   document.querySelectorAll("section[id]").forEach(section => seen.observe(section));
+
+  globalThis.report = {
+    marks, setRange, whole,
+    grids: () => Object.values(grids).filter(grid => grid.time.length > 1),
+    interactive: Boolean(globalThis.uPlot && places.length),
+    // The curves of one run, in every plot.
+    showRun(run, show) {
+      runs[run] = !show;
+      for (const place of places) {
+        data.plots[place.dataset.plot].curves.forEach((c, i) => {
+          if (c.run === run && place.uplot) place.uplot.setSeries(i + 1, { show });
+        });
+      }
+    },
+  };
 })();

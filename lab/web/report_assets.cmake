@@ -24,7 +24,7 @@ function(footfall_add_report_assets target)
   add_custom_command(OUTPUT ${out}/report_assets.cc
     COMMAND ${CMAKE_COMMAND} -DWEB=${web} -DOUT=${out} -P ${web}/embed.cmake
     DEPENDS ${out}/uplot-${way}.stamp ${web}/report.html ${web}/report.css ${web}/report.js
-            ${web}/embed.cmake
+            ${web}/report_keys.js ${web}/embed.cmake
     COMMENT "Report: page" VERBATIM)
   target_sources(${target} PRIVATE ${out}/report_assets.cc)
 endfunction()

@@ -163,8 +163,10 @@ TEST_F(Report, ALogWithoutRowsStillGivesAPage) {
   none.signals = {{"com.pos.x", "m", ""}};
   none.column.resize(1);
   for (const bool is_static : {false, true}) {
-    EXPECT_NE(report_html(none, {{}, {}, {}, "no EGL", is_static}).find("No pictures: no EGL"),
-              std::string::npos);
+    ReportOptions options;
+    options.strip_note = "no EGL";
+    options.static_plots = is_static;
+    EXPECT_NE(report_html(none, options).find("No pictures: no EGL"), std::string::npos);
   }
   EXPECT_NO_THROW(report_html(Log{}, {}));
 }
