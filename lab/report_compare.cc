@@ -17,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kColours = {"c0", "c1", "c2", "c3", "c4", "c5"};
 static_assert(kColours.size() == kMaxCompared);
 constexpr std::size_t kPathPoints = 2000;
 constexpr std::size_t kFootsteps = 200;  // the last ones of a run

@@ -9,8 +9,6 @@
 namespace footfall::lab {
 namespace {
 
-constexpr std::array<const char*, 6> kColours = {"c0", "c1", "c2", "c3", "c4", "c5"};
-
 std::string colour(std::size_t index) { return kColours[index % kColours.size()]; }
 
 // A plain number where an angle is meant reads better as rad, and its second derivative as rad/s².

@@ -15,8 +15,9 @@ struct ReportPage {
   std::string css;          // the whole style sheet
   std::string data = "{}";  // JSON for the page's script
   std::string library;      // script that the page's own needs
-  std::string footer = "Drag in a plot to zoom, double-click for the whole run; press ? for keys. "
-                       "SI units, z up.";
+  std::string footer =
+      "Drag in a plot to zoom, double-click for the whole run; press ? for keys. "
+      "SI units, z up.";
 };
 
 // The template lab/web/report.html, filled.

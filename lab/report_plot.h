@@ -2,6 +2,7 @@
 // CSS variables of lab/web/report.css, so that light and dark are one page.
 #pragma once
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "lab/report_data.h"
 
 namespace footfall::lab {
+
+// Classes of report.css, in the order in which curves take them.
+inline constexpr std::array<const char*, 6> kColours = {"c0", "c1", "c2", "c3", "c4", "c5"};
 
 // One curve over time.
 struct Curve {
