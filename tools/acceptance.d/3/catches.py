@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Usage: tools/acceptance.d/3/catches.py [NAME...] [--keep-going] [--show]
+"""Usage: tools/acceptance.d/3/catches.py [NAME...] [--show]
 
 Does the quick set of our own library notice what breaks a robot? Each planted mistake of tests/regression/planted.json
 is applied alone to a copy of the tree, built and judged by `footfall test --labels quick`; those of harmless.json change
 nothing that matters and must pass. A mistake counts as caught if a scenario fails, and as well reported if the text of a
-failure names one of the mistake's `points_at` (a signal, a state, a quantity).
+failed expectation, its state or its reason names one of the mistake's `points_at` (a signal, a state, a quantity).
 
   NAME...     only mistakes whose name holds one of these words
   --show      prints what was reported for each
@@ -77,15 +77,24 @@ def put_back(before):
 
 
 def judge(out):
-    """The failures of the quick set as texts, nothing if it passes."""
+    """What the quick set complains of, one text for each broken expectation or run; nothing if it passes."""
     result = out / "result.json"
     result.unlink(missing_ok=True)
     done = run([BUILD / "apps" / "footfall", "test", "tests/regression", "--labels", "quick", "-j", rows.PROCESSES,
-                "--out", out, "--json", result], cwd=TREE, timeout=900)
+                "--out", out, "--json", result, "--no-report"], cwd=TREE, timeout=900)
     if done.returncode == 0:
         return []
-    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-    return lines or [f"exit {done.returncode}"]
+    if not result.exists():
+        return [f"exit {done.returncode}: {done.stderr.strip()[-300:]}"]
+    texts = []
+    for scenario in json.loads(result.read_text())["scenarios"]:
+        for one in scenario["runs"]:
+            broken = [e for e in one.get("expectations") or [] if not e["passed"]]
+            texts += [f"{scenario['name']}: {e['text']} [{e['state']}] {e['why']}" for e in broken]
+            if not broken and one["verdict"] != "passed":
+                texts.append(f"{scenario['name']}: {one['verdict']}: {one['why']}")
+        texts += [f"{scenario['name']}: {scenario['errors']}"] if scenario.get("errors") else []
+    return texts or [f"exit {done.returncode}"]
 
 
 def try_one(mistake, out):
@@ -118,7 +127,7 @@ def main():
     caught, pointed, alarms = [], [], []
     for mistake in planted + harmless:
         failures = try_one(mistake, out)
-        named = [w for w in mistake.get("points_at", []) if any(w in line for line in failures)]
+        named = [w for w in mistake.get("points_at", []) if any(w in line.split(': ', 1)[-1] for line in failures)]
         if mistake in harmless:
             alarms += [mistake["name"]] if failures else []
         else:
