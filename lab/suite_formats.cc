@@ -5,6 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "core/escape.h"
 #include "lab/suite.h"
 
 namespace footfall::lab {
@@ -12,28 +13,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// In attributes a plain newline would be read as a blank.
 std::string xml(const std::string& text) {
   std::string out;
-  for (const char c : printable(text)) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\n':
-        out += "&#10;";
-        break;
-      default:
-        out += c;
-    }
+  const std::string shown = printable(text);
+  for (std::string_view rest = shown; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    out += core::escape_html(rest.substr(0, end));
+    if (end == std::string_view::npos) break;
+    out += "&#10;";
+    rest.remove_prefix(end + 1);
   }
   return out;
 }

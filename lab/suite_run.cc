@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "lab/utc_time.h"
+
 namespace footfall::lab {
 namespace {
 
@@ -18,15 +20,6 @@ namespace fs = std::filesystem;
 constexpr double kTimeoutBase = 60.0, kTimeoutPerSecond = 3.0;
 constexpr double kReportTimeout = 120.0;                   // s
 constexpr double kReportBefore = 1.5, kReportAfter = 0.5;  // s around the moment
-
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  return text;
-}
 
 // The name as the name of a folder.
 std::string folder_name(std::string name) {

@@ -7,12 +7,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
-#include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "lab/sqlite_statement.h"
+#include "lab/utc_time.h"
 
 namespace footfall::lab {
 namespace {
@@ -32,15 +31,6 @@ CREATE TABLE figures(run INTEGER NOT NULL REFERENCES runs, name TEXT NOT NULL, v
   PRIMARY KEY(run, name)) WITHOUT ROWID;
 CREATE INDEX runs_by_status ON runs(status);
 )";
-
-std::string utc_time() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  return text;
-}
 
 void put_meta(sqlite3* db, const char* key, const std::string& value) {
   SqliteStatement(db, "INSERT OR REPLACE INTO meta VALUES(?, ?)").bind(key).bind(value).run();
@@ -220,7 +210,7 @@ void SweepStore::begin(const SweepDescription& sweep, const SweepIdentity& ident
   if (fresh) {
     make_tables();
     put_meta(db_, "format", "1");
-    put_meta(db_, "created", utc_time());
+    put_meta(db_, "created", utc_now());
     put_meta(db_, "shard", std::to_string(identity.shard));
     put_meta(db_, "shards", std::to_string(identity.shards));
   } else {
@@ -257,7 +247,7 @@ void SweepStore::record(std::size_t id, const std::string& command, const SweepR
       "WHERE id = ? AND status = 'pending'");
   update.bind(sweep_status_name(result.status)).bind(result.end).bind(result.why);
   update.bind(result.error_tail).bind(static_cast<sqlite3_int64>(result.exit_code));
-  update.bind(result.wall_time).bind(result.cpu_time).bind(command).bind(utc_time());
+  update.bind(result.wall_time).bind(result.cpu_time).bind(command).bind(utc_now());
   update.bind(static_cast<sqlite3_int64>(id)).run();
   if (sqlite3_changes(db_) != 1) throw SweepStoreError(fmt::format("run {} was done already", id));
   SqliteStatement put(db_,
