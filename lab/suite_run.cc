@@ -57,7 +57,13 @@ Command command_of(const SuiteScenario& scenario, const SuiteRun& run,
 void remove_folder(const std::string& folder) {
   std::error_code ignored;
   fs::remove_all(folder, ignored);
-  fs::remove(fs::path(folder).parent_path(), ignored);  // if it is empty now
+}
+
+// The folder of a scenario, if it is empty. Only while none of its runs is under way: a run that
+// is just making its own folder in it would find it gone.
+void remove_parent(const std::string& folder) {
+  std::error_code ignored;
+  fs::remove(fs::path(folder).parent_path(), ignored);
 }
 
 // Counts runs, tells of scenarios in their order.
@@ -82,7 +88,7 @@ class Session {
     std::erase(progress_.running, label(r));
     ++progress_.done;
     progress_.failed += run.verdict != Verdict::passed && run.verdict != Verdict::stopped ? 1U : 0U;
-    --left_[run.scenario];
+    if (--left_[run.scenario] == 0) remove_parent(run.folder);
     tell();
     judge_finished();
   }

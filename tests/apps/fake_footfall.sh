@@ -10,8 +10,6 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-mkdir -p "$folder"
-echo "a log" >"$folder/log.mcap"
 act=pass seen='' passed=true end=time code=0
 first='"passed": true'
 while IFS= read -r line; do
@@ -26,6 +24,9 @@ while IFS= read -r line; do
     "  - "*) seen="$seen|" ;;
   esac
 done <"$path"
+mkdir -p "${folder%/*}"
+[ "$act" != late ] || sleep 0.3
+mkdir "$folder" && echo "a log" >"$folder/log.mcap" || exit 3
 case $act in
   crash) printf 'about to crash \001\377 <&>\n' >&2; kill -SEGV $$ ;;
   hang) exec sleep 60 ;;

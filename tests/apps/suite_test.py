@@ -99,6 +99,11 @@ class Children(Case):
         passed = {s["name"]: s["passed"] for s in self.session["scenarios"]}
         self.assertEqual(passed, {"crashes": False, "enough": True, "too_few": False})
 
+    def test_a_run_that_passes_does_not_take_the_folder_away_from_one_that_begins(self):
+        self.scenario("begins", "late@2", "1..2")
+        self.assertEqual(self.footfall().returncode, 0)
+        self.assertEqual(self.verdicts(), {"begins": ["passed", "passed"]})
+
     def test_the_order_of_the_output_does_not_depend_on_who_ends_first(self):
         self.scenario("a", "slow")
         self.scenario("b", "pass", "1..3")
