@@ -17,6 +17,10 @@ find_package(CLI11 REQUIRED)                  # CLI11::CLI11
 
 include(FootfallZstd)                         # footfall_zstd
 include(FootfallLua)                          # footfall_lua
+include(FootfallLcm)                          # footfall_lcm, footfall_sodium
+find_program(LCM_GEN lcm-gen REQUIRED)        # makes engine/lcm/*.lcm into headers
+set(CURSES_NEED_WIDE TRUE)
+find_package(Curses REQUIRED)                 # CURSES_LIBRARIES, CURSES_INCLUDE_DIRS
 
 find_library(EGL_LIBRARY EGL REQUIRED)
 find_path(STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)

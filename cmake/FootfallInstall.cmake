@@ -7,6 +7,8 @@ foreach(folder core hal model tasks behaviors engine sim lab)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/footfall
     FILES_MATCHING PATTERN "*.h" PATTERN "allocation_count.h" EXCLUDE PATTERN "library" EXCLUDE PATTERN "scaffolds" EXCLUDE PATTERN "worlds" EXCLUDE PATTERN "web" EXCLUDE)
 endforeach()
+install(DIRECTORY ${PROJECT_BINARY_DIR}/messages/footfall_lcm DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/lcm DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/behaviors/library ${PROJECT_SOURCE_DIR}/behaviors/scaffolds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/behaviors)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/worlds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/sim)
@@ -19,4 +21,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/footfallConfig.cmake.i
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/footfallConfig.cmake ${PROJECT_BINARY_DIR}/footfallConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/FootfallZstd.cmake ${PROJECT_SOURCE_DIR}/cmake/FootfallLua.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FootfallLcm.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)
