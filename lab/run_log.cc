@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/index.h"
@@ -105,7 +104,8 @@ void RunLog::write_plans() {
   for (std::size_t i = 0; i < last_targets_.size(); ++i) {
     const double* target = loop_.signals().values() + behavior.layout.planner[i].target;
     const std::array<double, 3> now = {target[0], target[1], target[2]};
-    if (std::hypot(now[0] - last_targets_[i][0], now[1] - last_targets_[i][1]) < 1e-3) continue;
+    const double dx = now[0] - last_targets_[i][0], dy = now[1] - last_targets_[i][1];
+    if (dx * dx + dy * dy < 1e-6) continue;
     last_targets_[i] = now;
     event("plan", behavior.planners[i].name,
           fmt::format("{:.4f} {:.4f} {:.4f}", now[0], now[1], now[2]));

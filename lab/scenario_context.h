@@ -20,6 +20,7 @@ struct ScenarioContext {
   // form of the file is checked.
   std::unique_ptr<behaviors::LoadContext> names;
   std::optional<std::vector<std::string>> bodies;  // of the robot's model, if it could be read
+  std::vector<std::string> functions;              // of `scripts`
 
   void error(core::Mark mark, std::string_view id, std::string text) {
     diagnostics.error(mark, id, std::move(text));

@@ -39,8 +39,9 @@ std::vector<std::string> unsupported(const ScenarioDescription& scenario,
 }
 
 ScenarioCues::ScenarioCues(const ScenarioDescription& scenario, const ScenarioHooks& hooks,
-                           engine::ControlLoop& loop)
+                           engine::ControlLoop& loop, std::uint64_t seed)
     : scenario_(scenario), hooks_(hooks), loop_(loop) {
+  if (!scenario.scripts.empty()) lua_.emplace(scenario, loop, seed);
   for (const ScriptEntry& entry : scenario.script) {
     Cue& cue = cues_.emplace_back();
     cue.entry = &entry;
@@ -136,6 +137,7 @@ void ScenarioCues::act(const ScriptEntry& entry, RunLog& log) {
   if (!entry.edit.empty() || entry.raise >= 0) {
     submit(entry, entry.edit, engine::EditSource::scenario, log);
   }
+  if (!entry.call.empty()) call(entry, log);
   const std::int64_t until = entry.duration ? loop_.ticks() + ticks_of(*entry.duration)
                                             : std::numeric_limits<std::int64_t>::max();
   if (entry.fault) {
@@ -164,6 +166,21 @@ void ScenarioCues::submit(const ScriptEntry& entry, const std::vector<NewValues>
     batch.over = entry.over;
     if (entry.raise >= 0) batch.events.push_back(entry.raise);
   }
+  hand_in(entry, batch, log);
+}
+
+void ScenarioCues::call(const ScriptEntry& entry, RunLog& log) {
+  const ScenarioLua::Result result = lua_->call(entry.call);
+  for (const std::string& text : result.messages) log.event("log", text, "scenario");
+  if (result.failed) {
+    problem_ =
+        place_of(entry) + ": " + (result.messages.empty() ? "it failed" : result.messages.back());
+  } else if (!result.batch.values.empty() || !result.batch.events.empty()) {
+    hand_in(entry, result.batch, log);
+  }
+}
+
+void ScenarioCues::hand_in(const ScriptEntry& entry, const engine::EditBatch& batch, RunLog& log) {
   const engine::EditReply reply = loop_.edits().submit(batch);
   if (reply.accepted()) return;
   problem_ = fmt::format("{}: the edit was refused: {}", place_of(entry), reply.reasons.front());

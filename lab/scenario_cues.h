@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "lab/run.h"
 #include "lab/run_log.h"
 #include "lab/scenario_description.h"
+#include "lab/scenario_lua.h"
 
 namespace footfall::lab {
 
@@ -34,9 +36,9 @@ std::vector<std::string> unsupported(const ScenarioDescription& scenario,
 
 class ScenarioCues {
  public:
-  // All must outlive it.
+  // All must outlive it. seed: of the run.
   ScenarioCues(const ScenarioDescription& scenario, const ScenarioHooks& hooks,
-               engine::ControlLoop& loop);
+               engine::ControlLoop& loop, std::uint64_t seed);
 
   // Before each tick: what is due.
   void fire(const StepClock& steps, RunLog& log);
@@ -73,6 +75,8 @@ class ScenarioCues {
   void act(const ScriptEntry& entry, RunLog& log);
   void submit(const ScriptEntry& entry, const std::vector<NewValues>& values,
               engine::EditSource source, RunLog& log);
+  void hand_in(const ScriptEntry& entry, const engine::EditBatch& batch, RunLog& log);
+  void call(const ScriptEntry& entry, RunLog& log);
   void inject(InjectedFault fault, bool on);
   void end_lasting(RunLog& log);
   std::int64_t ticks_of(double seconds) const;
@@ -85,7 +89,8 @@ class ScenarioCues {
   std::vector<Watched> watched_;
   std::vector<Lasting> lasting_;
   std::vector<std::string> bodies_;
-  std::array<int, 4> failing_{};  // by InjectedFault: entries that have it fail now
+  std::array<int, 4> failing_{};    // by InjectedFault: entries that have it fail now
+  std::optional<ScenarioLua> lua_;  // if some entry calls
   std::string problem_;
 };
 

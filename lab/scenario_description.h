@@ -58,6 +58,7 @@ struct ScriptEntry {
   int raise = -1;  // into Behavior::events
   std::optional<InjectedFault> fault;
   std::string hold;                // a body; empty: none
+  std::string call;                // a function of ScenarioDescription::scripts; empty: none
   std::optional<double> duration;  // s, of fault or hold; none: to the end
 };
 
@@ -105,6 +106,7 @@ struct ScenarioDescription {
   std::vector<std::uint64_t> seeds{1};
   double duration = 0.0;  // s
   std::vector<ScriptEntry> script;
+  std::vector<behaviors::ScriptFile> scripts;
   std::vector<Expectation> expectations;
   std::optional<GoldenSpec> golden;
   std::unique_ptr<behaviors::Behavior> behavior;

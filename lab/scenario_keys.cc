@@ -23,6 +23,8 @@ constexpr KeySpec kScenarioRows[] = {
         .otherwise("1"),
     key("for", quantity(kTime), "how long a run lasts").required(),
     key("script", list(map_of(kScriptKeys)), "what happens to the robot from outside"),
+    key("scripts", one_or_list(text_of("the path of a Lua file")),
+        "files of Lua beside this one, whose functions `call` names"),
     key("expect", list(condition()), list(map_of(kExpectationKeys)),
         "what must hold; a lone condition is judged at the end of every run"),
     key("golden", map_of(kGoldenKeys), "a recorded trace that the first seed's run must follow"),
@@ -54,6 +56,8 @@ constexpr KeySpec kScriptRows[] = {
     key("raise", name_of("an event"), "an event from outside, with the edit if there is one"),
     key("fault", choice(kInjectedFaultRows), "something that fails"),
     key("hold", name_of("a body"), "a body that people hold where it is"),
+    key("call", name_of("a Lua function"),
+        "a function of `scripts`: what it sets is set at once, what it raises comes from outside"),
     key("for", quantity(kTime), "how long `fault` or `hold` lasts")
         .otherwise("to the end of the run"),
     key("doc", text_of("a text"), "why, in a line"),
@@ -108,7 +112,7 @@ constinit const core::KeyTable kScriptKeys = {
     .id = "script",
     .doc = "Something that happens to the robot from outside.",
     .keys = kScriptRows,
-    .one_of = {"at on", "push edit set raise fault hold"}};
+    .one_of = {"at on", "push edit set raise fault hold call"}};
 constinit const core::KeyTable kMomentKeys = {
     .id = "moment", .doc = "A place in the run.", .keys = kMomentRows, .one_of = {"step state"}};
 constinit const core::KeyTable kPushKeys = {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "behaviors/load_scripts.h"
 #include "lab/scenario_context.h"
 #include "lab/scenario_keys.h"
 #include "model/mjcf.h"
@@ -194,6 +195,16 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
   }
 }
 
+void load_functions(ScenarioContext& context, const YamlNode& node) {
+  context.scenario.scripts = behaviors::read_script_files(node, context.diagnostics);
+  behaviors::Script script({});
+  behaviors::run_script_files(context.scenario.scripts, script, context.diagnostics);
+  context.functions = script.functions();
+  if (script.patterns().empty()) return;
+  context.error(node.mark, "misplaced-name",
+                "footfall.on has no meaning in a scenario: write `{on: EVENT, call: FUNCTION}`");
+}
+
 }  // namespace
 
 std::string beside(const ScenarioContext& context, const YamlNode& node) {
@@ -258,10 +269,11 @@ ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions
   const YamlNode root = core::load_yaml_with_base(path, diagnostics);
   if (!core::check_kind(root, "scenario", 1, diagnostics)) return scenario;
   core::check_keys(root, kScenarioKeys, diagnostics);
-  ScenarioContext context{scenario, diagnostics, nullptr, {}};
+  ScenarioContext context{scenario, diagnostics, nullptr, {}, {}};
   read_head(context, root);
   load_named_behavior(context, root, options);
   load_bodies(context);
+  if (const YamlNode* scripts = root.find("scripts")) load_functions(context, *scripts);
   if (const YamlNode* script = root.find("script")) load_script(context, *script);
   if (const YamlNode* expect = root.find("expect")) load_expectations(context, *expect);
   if (const YamlNode* golden = root.find("golden")) load_golden(context, *golden);

@@ -14,9 +14,10 @@ namespace {
 
 class Stage final : public RunObserver {
  public:
-  Stage(const ScenarioDescription& scenario, engine::ControlLoop& loop, const ScenarioHooks& hooks)
+  Stage(const ScenarioDescription& scenario, engine::ControlLoop& loop, const ScenarioHooks& hooks,
+        std::uint64_t seed)
       : loop_(loop),
-        cues(scenario, hooks, loop),
+        cues(scenario, hooks, loop, seed),
         judge(scenario, loop),
         taken(scenario.behavior->transitions.size(), false) {
     if (scenario.golden) recorder.emplace(*scenario.golden, loop);
@@ -65,7 +66,7 @@ bool names_an_end(const ScenarioDescription& scenario) {
 
 ScenarioRun run_scenario(const ScenarioDescription& scenario, std::uint64_t seed,
                          engine::ControlLoop& loop, const ScenarioHooks& hooks, RunSpec spec) {
-  Stage stage(scenario, loop, hooks);
+  Stage stage(scenario, loop, hooks, seed);
   spec.max_time = scenario.duration;
   spec.max_steps = 0;
   spec.events.clear();

@@ -106,6 +106,16 @@ std::string read_body(ScenarioContext& context, const YamlNode& node) {
   return node.scalar;
 }
 
+std::string read_call(ScenarioContext& context, const YamlNode& node) {
+  if (!core::expect_scalar(node, "the name of a function", context.diagnostics)) return {};
+  if (std::ranges::find(context.functions, node.scalar) == context.functions.end()) {
+    context.error(node.mark, "unknown-function",
+                  fmt::format("unknown function '{}': no file of `scripts` defines it{}",
+                              node.scalar, core::did_you_mean(node.scalar, context.functions)));
+  }
+  return node.scalar;
+}
+
 ScriptedPush read_push(ScenarioContext& context, const YamlNode& node) {
   ScriptedPush push;
   if (!core::expect_map(node, "a push: {force: 40 N, for: 100 ms, direction: 90 deg}",
@@ -244,7 +254,8 @@ void read_entry(ScenarioContext& context, const YamlNode& node) {
   ScriptEntry entry;
   entry.mark = node.mark;
   read_moment(context, node, entry.moment);
-  const std::vector<std::string> actions = {"push", "edit", "set", "raise", "fault", "hold"};
+  const std::vector<std::string> actions = {"push",  "edit", "set", "raise",
+                                            "fault", "hold", "call"};
   const bool acts = std::ranges::any_of(
       actions, [&node](const std::string& key) { return node.find(key) != nullptr; });
   if (!acts) expect_one_of(context, node, actions);
@@ -259,6 +270,7 @@ void read_entry(ScenarioContext& context, const YamlNode& node) {
   if (const YamlNode* set = node.find("set")) entry.set = read_changes(context, *set, false);
   if (const YamlNode* raise = node.find("raise")) entry.raise = read_raise(context, *raise);
   if (const YamlNode* hold = node.find("hold")) entry.hold = read_body(context, *hold);
+  if (const YamlNode* call = node.find("call")) entry.call = read_call(context, *call);
   if (const YamlNode* fault = node.find("fault")) {
     const auto choice =
         core::read_choice(*fault, kInjectedFaults, context.diagnostics, "something that fails");

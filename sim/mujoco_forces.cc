@@ -7,14 +7,6 @@
 #include "sim/mujoco_backend.h"
 
 namespace footfall::sim {
-namespace {
-
-// Hands that hold: critically damped with this frequency for the mass of the whole robot, so that
-// its weight moves them by g/w^2 = 4 mm.
-constexpr double kHoldFrequency = 50.0;  // rad/s
-
-}  // namespace
-
 void MujocoBackend::apply_forces() noexcept {
   for (const ActivePush& p : pushes_) {
     if (p.body != 0) std::fill_n(data_->xfrc_applied + 6 * p.body, 6, 0.0);
@@ -37,7 +29,7 @@ void MujocoBackend::apply_forces() noexcept {
 // f = m (w^2 (x_held - x) - 2 w v) at the centre of mass; at the root body, whose rotation carries
 // all the others, likewise with the rotational inertia that its free joint sees.
 void MujocoBackend::apply_hold(const HeldBody& held) noexcept {
-  constexpr double w = kHoldFrequency;
+  const double w = world_.physics.hands;
   const int root = model_->body_rootid[held.body];
   const double mass = model_->body_subtreemass[root];
   std::array<double, 6> velocity{};  // rotation, then translation of the CoM; world

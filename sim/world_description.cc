@@ -243,6 +243,7 @@ class WorldLoader {
     read_bounded(node, "tolerance", core::kNone, 0.0, 1.0, physics.tolerance);
     if (const YamlNode* solref = node.find("solref")) read_solref(*solref);
     if (const YamlNode* solimp = node.find("solimp")) read_solimp(*solimp);
+    read_bounded(node, "hands", core::kRate, 1.0, 200.0, physics.hands);
   }
 
   void read_integer(const YamlNode& map, std::string_view key, int maximum, int& out) {

@@ -62,6 +62,9 @@ struct PhysicsSettings {
   // behind changing forces so much that task accelerations miss their command by 0.03 rad/s^2.
   std::array<double, 2> solref{0.001, 1.0};
   std::array<double, 3> solimp{0.95, 0.99, 0.001};  // contact impedance: d0, dwidth, width (m)
+  // rad/s, of people's hands that hold: critically damped for the mass of the whole robot, whose
+  // weight moves them by g/w^2: 4 mm.
+  double hands = 50.0;
 };
 
 // A named external aid (a boom, a planarizer): none unless the world names it.

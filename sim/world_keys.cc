@@ -130,6 +130,10 @@ constexpr KeySpec kPhysicsRows[] = {
         .otherwise("[1 ms, 1]"),
     key("solimp", list(any_quantity()), "`[IMPEDANCE AT 0, IMPEDANCE AT WIDTH, WIDTH]` of contacts")
         .otherwise("[0.95, 0.99, 1 mm]"),
+    key("hands", quantity(kRate),
+        "frequency of people's hands that hold the robot: its weight moves them by g over its "
+        "square")
+        .otherwise("50 rad/s"),
 };
 
 }  // namespace

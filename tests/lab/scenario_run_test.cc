@@ -131,6 +131,37 @@ TEST_F(ScenarioRunTest, SetWritesWhatIsNotLive) {
   EXPECT_TRUE(judge("in(gone)", "script: [{at: 100 ms, set: {stiff: 6}}]\n").passed);
   EXPECT_FALSE(judge("in(gone)").passed);
 }
+// What a function sees is the last tick's; what it wants is there in the next one, set first.
+TEST_F(ScenarioRunTest, AFunctionOfLuaSeesTheRobotAndActsThroughTheDoor) {
+  std::ofstream(folder_ / "s.lua") << R"(
+    function leave()
+      footfall.log(string.format("%.1f %s", footfall.time(), tostring(footfall.active("c"))))
+      if footfall.active("c") then footfall.set("stiff", 6) end
+    end
+    function back() footfall.set("stiff", 2) footfall.set("lap", 0.3) footfall.raise("tapped") end
+  )";
+  const ScenarioRun done =
+      run("scripts: s.lua\n"
+          "script:\n"
+          "  - {at: 100 ms, call: leave}\n"  // not in c yet
+          "  - {at: 250 ms, call: leave}\n"
+          "  - {at: 400 ms, call: back}\n"
+          "expect:\n"
+          "  - {that: in(b) or in(c), between: [101 ms, 249 ms]}\n"
+          "  - {that: in(gone), between: [250 ms, 399 ms]}\n"
+          "  - in(a)\n"
+          "  - $lap == 300 ms\n");
+  for (const ExpectationOutcome& e : done.outcome.expectations) EXPECT_TRUE(e.passed) << e.text;
+  EXPECT_TRUE(done.outcome.passed) << done.outcome.why;
+}
+TEST_F(ScenarioRunTest, AFunctionOfLuaThatFailsFailsTheRun) {
+  std::ofstream(folder_ / "s.lua") << "function bad()\n  footfall.set('lap', 100)\nend\n";
+  const ScenarioRun done = run("scripts: [s.lua]\nscript: [{at: 100 ms, call: bad}]\n");
+  EXPECT_FALSE(done.outcome.passed);
+  EXPECT_NE(done.outcome.why.find("s.yaml:5:10"), std::string::npos) << done.outcome.why;
+  EXPECT_NE(done.outcome.why.find("100 is outside the range of 'lap'"), std::string::npos)
+      << done.outcome.why;
+}
 TEST_F(ScenarioRunTest, AFaultOfASensorIsReportedAndEnds) {
   const ScenarioRun done =
       run("script: [{at: 100 ms, fault: imu.dropout, for: 10 ms}]\n"

@@ -1,0 +1,2 @@
+function hear() end
+footfall.on("fault", hear)
