@@ -5,7 +5,7 @@
 
 #include "apps/commands.h"
 #include "apps/report_command.h"
-#include "lab/sweep_session.h"
+#include "lab/process_pool.h"
 #include "lab/version.h"
 
 int main(int argc, char** argv) {

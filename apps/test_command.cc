@@ -14,6 +14,7 @@
 #include "apps/run_setup.h"
 #include "core/units.h"
 #include "lab/bless.h"
+#include "lab/process_pool.h"
 #include "lab/suite_files.h"
 #include "lab/suite_run.h"
 
@@ -288,6 +289,7 @@ int test(const TestOptions& options) {
     status.clear();
     print_scenario(stream, all, s);
   };
+  lab::announce_to_children();
   lab::run_suite(suite, settings);
   status.clear();
   if (options.bless) return bless_traces(options, suite);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "behaviors/load_context.h"
+#include "core/dotted_name.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -18,18 +19,6 @@ core::YamlNode* child(core::YamlNode& map, std::string_view key) {
     if (entry.key == key) return &entry.value;
   }
   return nullptr;
-}
-
-std::vector<std::string> split(std::string_view name) {
-  std::vector<std::string> parts(1);
-  for (const char c : name) {
-    if (c == '.') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
 }
 
 void put_or_replace(core::YamlNode& map, const std::string& key, core::YamlNode value) {
@@ -119,7 +108,7 @@ void apply(LoadContext& context, const std::string& name, const std::string& tex
     }
     return;
   }
-  const std::vector<std::string> parts = split(name);
+  const std::vector<std::string> parts = core::split_dots(name);
   if (parts[0] == "gains") {
     set_gain(context, name, parts, std::move(value));
   } else if (parts[0] == "planners") {

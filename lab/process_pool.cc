@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
@@ -28,6 +30,8 @@ using Clock = std::chrono::steady_clock;
 
 // A child that closed its pipes and goes on is noticed this late.
 constexpr int kPollPeriodMs = 20;
+
+constexpr const char* kParent = "FOOTFALL_PARENT";
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -315,6 +319,17 @@ std::string describe(const ProcessResult& result) {
       return "could not be started: " + result.error;
   }
   return "";
+}
+
+void announce_to_children() { ::setenv(kParent, std::to_string(::getpid()).c_str(), 1); }
+
+void die_with_parent() {
+  const char* text = std::getenv(kParent);
+  if (text == nullptr) return;
+  const long parent = std::atol(text);
+  ::unsetenv(kParent);  // not for its own children
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != static_cast<pid_t>(parent)) std::_Exit(1);  // it died before
 }
 
 std::string shell_line(const std::vector<std::string>& arguments) {

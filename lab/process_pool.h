@@ -53,6 +53,13 @@ struct PoolSettings {
 // own, which is killed as a whole; it reads nothing (stdin is empty) and writes no core file.
 void run_processes(const std::vector<Command>& commands, const PoolSettings& settings);
 
+// A child that this process starts from now on dies with it, however it ends; see
+// die_with_parent().
+void announce_to_children();
+// In the child, first thing: the kernel kills it when its parent dies. Nothing without an
+// announcement.
+void die_with_parent();
+
 // Processors of this machine, at least 1.
 int processor_count();
 // `died of SIGSEGV (Segmentation fault)`, `exit code 2`, `no end after 60 s`, ...

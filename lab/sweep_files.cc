@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "core/dotted_name.h"
 #include "core/yaml_write.h"
 #include "lab/yaml_build.h"
 
@@ -23,18 +24,6 @@ constexpr std::string_view kScript = "script.", kWorld = "world.";
 YamlNode parsed(const std::string& text) {
   core::Diagnostics ignored;  // it was read from a file, or written by us
   return core::load_yaml_text(text, "", ignored);
-}
-
-std::vector<std::string> split(std::string_view name) {
-  std::vector<std::string> parts(1);
-  for (const char c : name) {
-    if (c == '.') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
 }
 
 // The value that the parts after the first lead to; maps on the way are made.
@@ -53,7 +42,7 @@ void put_at(YamlNode& root, const std::vector<std::string>& parts, const std::st
 // script.N.KEY...
 void put_in_script(std::vector<YamlNode>& script, const std::string& name,
                    const std::string& text) {
-  std::vector<std::string> parts = split(name);
+  std::vector<std::string> parts = core::split_dots(name);
   std::size_t number = 0;
   const std::string& digits = parts[1];
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
@@ -161,7 +150,7 @@ std::string SweepFiles::derived_world(const SweepRun& run, const std::string& ba
   bool changed = false;
   for (const auto& [name, text] : settings_of(sweep_, run)) {
     if (!is_world_axis(name)) continue;
-    put_at(root, split(name), text);
+    put_at(root, core::split_dots(name), text);
     changed = true;
   }
   return changed ? write(root, "world") : base;

@@ -2,14 +2,10 @@
 #include "lab/sweep_session.h"
 
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -25,7 +21,6 @@ using JsonValue = nlohmann::json;
 
 constexpr double kSweepTimeout = 60.0, kSweepTimeoutPerSecond = 3.0;
 constexpr std::size_t kTail = 2000;  // bytes of stderr kept
-constexpr const char* kParent = "FOOTFALL_PARENT";
 
 // Every number in the object, by its path with dots between.
 void flatten(const JsonValue& json, const std::string& name, SweepResult& result) {
@@ -210,17 +205,6 @@ std::vector<std::size_t> shard_ids(std::size_t runs, int shard, int shards) {
 SweepProgress run_sweep(const SweepDescription& sweep, SweepStore& store,
                         const SweepSettings& settings) {
   return SweepSession(sweep, store, settings).run();
-}
-
-void announce_to_children() { ::setenv(kParent, std::to_string(::getpid()).c_str(), 1); }
-
-void die_with_parent() {
-  const char* text = std::getenv(kParent);
-  if (text == nullptr) return;
-  const long parent = std::atol(text);
-  ::unsetenv(kParent);  // not for its own children
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != static_cast<pid_t>(parent)) std::_Exit(1);  // it died before
 }
 
 }  // namespace footfall::lab

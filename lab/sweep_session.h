@@ -39,11 +39,4 @@ SweepResult read_sweep_result(const ProcessResult& process);
 // Ids of a shard: every `shards`-th, so that all have the same mix.
 std::vector<std::size_t> shard_ids(std::size_t runs, int shard, int shards);
 
-// A child that this process starts from now on dies with it, however it ends; see
-// die_with_parent().
-void announce_to_children();
-// In the child, first thing: the kernel kills it when its parent dies. Nothing without an
-// announcement.
-void die_with_parent();
-
 }  // namespace footfall::lab

@@ -12,6 +12,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 BINARY = os.path.abspath(sys.argv[1])
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FAKE = str(pathlib.Path(__file__).with_name("fake_footfall.sh").resolve())
 
 CHART = """behavior: 1
@@ -29,6 +30,17 @@ machine:
   states:
     a: {contacts: [right_foot, left_foot], tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}}
 """
+
+
+def children_of(pid):
+    found = []
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            if stat.read_text().rpartition(")")[2].split()[1] == str(pid):
+                found.append(stat.parent.name)
+        except OSError:  # gone meanwhile
+            pass
+    return found
 
 
 class Case(unittest.TestCase):
@@ -109,6 +121,28 @@ class Children(Case):
         self.scenario("b", "pass", "1..3")
         lines = [line.split()[1] for line in self.footfall().stdout.splitlines() if line.startswith("PASS")]
         self.assertEqual(lines, ["a", "b"])
+
+    def test_children_do_not_outlive_a_parent_that_was_killed(self):
+        (self.folder / "tests/regression/chart.yaml").write_text(STAND)
+        path = self.folder / self.scenario("long", "runs for hours")
+        path.write_text(path.read_text().replace("for: 1 s", "for: 50000 s"))
+        environment = dict(os.environ, FOOTFALL_PATH=str(ROOT))
+        process = subprocess.Popen([BINARY, "test", "-j", "1"], cwd=self.folder, stdout=subprocess.DEVNULL, env=environment)
+        child = None
+        for _ in range(200):
+            found = children_of(process.pid)
+            if found and (self.folder / "out/test/long/seed-1/log.mcap").exists():
+                child = found[0]
+                break
+            time.sleep(0.02)
+        self.assertIsNotNone(child)
+        process.kill()
+        process.wait()
+        for _ in range(100):
+            if not pathlib.Path(f"/proc/{child}").exists():
+                return
+            time.sleep(0.02)
+        self.fail(f"{child} is still there")
 
     def test_an_interrupt_ends_the_children_and_tells_what_was_done(self):
         self.scenario("a", "pass")
