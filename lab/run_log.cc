@@ -22,6 +22,8 @@ std::string names_of(const behaviors::Chart& chart, const behaviors::Range& targ
   return names;
 }
 
+constexpr double kPlanRow = 5e-3;  // m
+
 // `goal[1]`: the parameter and which of its values.
 std::string slot_name(const std::vector<behaviors::ParameterInfo>& parameters, int slot) {
   for (const behaviors::ParameterInfo& p : parameters) {
@@ -98,14 +100,15 @@ void RunLog::write_edits() {
   }
 }
 
-// Replanning moves a target a little each time; a row for each millimetre tells the story.
+// Replanning moves a target a little each time: a row each 5 mm tells the story, and every answer
+// is in /plans.
 void RunLog::write_plans() {
   const behaviors::Behavior& behavior = loop_.behavior();
   for (std::size_t i = 0; i < last_targets_.size(); ++i) {
     const double* target = loop_.signals().values() + behavior.layout.planner[i].target;
     const std::array<double, 3> now = {target[0], target[1], target[2]};
     const double dx = now[0] - last_targets_[i][0], dy = now[1] - last_targets_[i][1];
-    if (dx * dx + dy * dy < 1e-6) continue;
+    if (dx * dx + dy * dy < kPlanRow * kPlanRow) continue;
     last_targets_[i] = now;
     event("plan", behavior.planners[i].name,
           fmt::format("{:.4f} {:.4f} {:.4f}", now[0], now[1], now[2]));
