@@ -105,6 +105,9 @@ constexpr KeySpec kLimitsRows[] = {
         .otherwise("60 %"),
     key("torque_step", quantity(kTorque), "of a joint's torque between neighbouring ticks")
         .otherwise("none"),
+    key("edit_ramp", quantity(kTime),
+        "over which values move at least when a person changes them in a run")
+        .otherwise("100 ms"),
 };
 
 }  // namespace
