@@ -180,7 +180,7 @@ void ControlLoop::compute() noexcept {
   }
   controller_.compute(machine_->control(), tick_, sensors_.tau.data());
   std::copy_n(controller_.result().tau.begin(), model_.joint_count(), commands_.tau.begin());
-  handle(safety_.filter(commands_));
+  handle(safety_.filter(commands_, limit_steps_));
   active_ = seen_;
   seen_ = {};
   write_control_signals();
@@ -194,6 +194,7 @@ void ControlLoop::actuate() noexcept {
 
 // What comes from outside of the tick, as it arrives now or, in a replay, as it was logged.
 void ControlLoop::take_inputs() noexcept {
+  limit_steps_ = playing_ ? trace_->limit_steps : is_edited();
   if (trace_ == nullptr) {
     planners_.deliver(tick_, *machine_, nullptr);
     if (scripts_) scripts_->deliver(*machine_);
@@ -208,11 +209,17 @@ void ControlLoop::take_inputs() noexcept {
     if (trace_->inspect) trace_->inspect();
   } else {
     trace_->clear();
+    trace_->limit_steps = limit_steps_;
     planners_.deliver(tick_, *machine_, &trace_->plans);
     if (scripts_) scripts_->deliver(*machine_);
     watch_.find(machine_->parameters(), trace_->writes);
     machine_->copy_outside_events(trace_->events);
   }
+}
+
+// Whether an edit moves values in this tick, or the command has not caught up with one yet.
+bool ControlLoop::is_edited() const noexcept {
+  return edits_.moved() || (limit_steps_ && safety_.held_back());
 }
 
 // A fault is counted and raised when it appears; it must go away before it counts again.

@@ -124,6 +124,7 @@ class ControlLoop {
   void write_internal_signals() noexcept;
   void leave_gaps() noexcept;
   void take_inputs() noexcept;
+  bool is_edited() const noexcept;
 
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
@@ -155,6 +156,7 @@ class ControlLoop {
   WriteWatch watch_;
   InputTrace* trace_ = nullptr;
   bool playing_ = false;
+  bool limit_steps_ = false;  // in this tick: an edit moves values, or the command still follows one
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;
 };

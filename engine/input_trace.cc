@@ -22,6 +22,7 @@ void InputTrace::clear() noexcept {
   events.clear();
   plans.clear();
   planned.clear();
+  limit_steps = false;
 }
 
 void WriteWatch::find(std::span<const double> parameters,

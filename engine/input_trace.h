@@ -1,5 +1,5 @@
-// What reaches a tick from outside besides the sensors: parameters written, events raised,
-// planners' answers. A trace records it for the log; replay puts it back at the same place in the
+// What reaches a tick from outside besides the sensors: parameters written and whether that limits
+// the torque's steps, events raised, planners' answers. A trace records it for the log; replay puts it back at the same place in the
 // tick.
 #pragma once
 
@@ -22,13 +22,16 @@ struct InputTrace {
   std::vector<ParameterWrite> writes;        // since the machine's last tick, whoever wrote
   std::vector<int> events;                   // raised from outside, in order
   std::vector<behaviors::PlanAnswer> plans;  // handed to the machine in this tick
+  bool limit_steps = false;                  // torque steps are limited in this tick
   // Of a replay:
   std::vector<behaviors::PlanAnswer> planned;  // what the planners themselves gave
   std::function<void()> inspect;               // called just before the machine's tick, if there
 
   void size_for(const behaviors::Behavior& behavior);
   void clear() noexcept;
-  bool empty() const noexcept { return writes.empty() && events.empty() && plans.empty(); }
+  bool empty() const noexcept {
+    return writes.empty() && events.empty() && plans.empty() && !limit_steps;
+  }
 };
 
 // Notices every write to the parameters from outside of the machine by comparing bit for bit, so

@@ -39,6 +39,7 @@ constexpr FieldRow kFields[] = {
     {"Edit", "slot", 2, Field::TYPE_UINT32, true},
     {"Edit", "value", 3, Field::TYPE_DOUBLE, true},
     {"Edit", "event", 4, Field::TYPE_UINT32, true},
+    {"Edit", "limit_steps", 5, Field::TYPE_BOOL},
     {"Parameters", "name", 1, Field::TYPE_STRING, true},
     {"Parameters", "slot", 2, Field::TYPE_UINT32, true},
     {"Parameters", "size", 3, Field::TYPE_UINT32, true},

@@ -228,7 +228,7 @@ void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
     std::ranges::for_each(plan.predicted_vel, put);
     put(plan.extension);
   }
-  if (trace.writes.empty() && trace.events.empty()) return;
+  if (trace.writes.empty() && trace.events.empty() && !trace.limit_steps) return;
   constexpr std::size_t kWrites = 256;  // of one message
   for (std::size_t from = 0; from == 0 || from < trace.writes.size(); from += kWrites) {
     const std::size_t count = std::min(kWrites, trace.writes.size() - from);
@@ -245,6 +245,7 @@ void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
     }
     if (from == 0) {
       for (const int event : trace.events) proto.number(4, static_cast<unsigned>(event));
+      if (trace.limit_steps) proto.number(5, 1);
     }
     m.finish_message(LogChannel::edits, tick, proto.end());
   }

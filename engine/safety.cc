@@ -8,6 +8,18 @@ namespace footfall::engine {
 
 using core::Fault;
 
+namespace {
+
+// As near to `wanted` as a step of `bound` from `previous` comes; the rounded difference of the two
+// is not beyond it either.
+double limited_step(double previous, double wanted, double bound) noexcept {
+  double tau = std::clamp(wanted, previous - bound, previous + bound);
+  while (std::abs(tau - previous) > bound) tau = std::nextafter(tau, previous);
+  return tau;
+}
+
+}  // namespace
+
 FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,
                         const model::ControlModel& model) noexcept {
   FallCriteria fall;
@@ -59,12 +71,15 @@ SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
   return findings;
 }
 
-SafetyFindings SafetyFilter::filter(hal::Commands& commands) noexcept {
+SafetyFindings SafetyFilter::filter(hal::Commands& commands, bool limit_steps) noexcept {
   SafetyFindings findings;
   torque_step_ = 0.0;
+  held_back_ = false;
+  const double bound = limit_steps && have_previous_ ? robot_.torque_step_limit : 0.0;
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     double& tau = commands.tau[j];
-    if (!std::isfinite(tau)) {
+    const bool finite = std::isfinite(tau);
+    if (!finite) {
       tau = 0.0;
       findings.add(Fault::non_finite);
     }
@@ -72,6 +87,11 @@ SafetyFindings SafetyFilter::filter(hal::Commands& commands) noexcept {
     if (limit > 0.0 && std::abs(tau) >= limit) {
       findings.add(Fault::torque_limit, {static_cast<int>(j), tau, std::abs(tau) - limit});
       tau = std::clamp(tau, -limit, limit);
+    }
+    // What is not finite is let go at once.
+    if (bound > 0.0 && finite && std::abs(tau - previous_[j]) > bound) {
+      tau = limited_step(previous_[j], tau, bound);
+      held_back_ = true;
     }
     const double step = have_previous_ ? tau - previous_[j] : 0.0;
     torque_step_ = std::max(torque_step_, std::abs(step));

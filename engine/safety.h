@@ -55,17 +55,21 @@ class SafetyFilter {
   SafetyFindings check_state(const hal::Sensors& sensors,
                              const model::ControlModel& model) noexcept;
 
-  // After control: replaces what is not finite by 0, clamps to the limits, counts torque steps.
-  // `first` suppresses the step check of the first tick.
-  SafetyFindings filter(hal::Commands& commands) noexcept;
+  // After control: replaces what is not finite by 0, clamps to the limits, counts torque steps (the
+  // first tick has none). With `limit_steps` no finite command steps by more than the robot's
+  // bound, to the last bit: it follows what was asked for at that rate.
+  SafetyFindings filter(hal::Commands& commands, bool limit_steps = false) noexcept;
 
   double torque_step() const noexcept { return torque_step_; }  // N m, largest of the last tick
+  // Whether the last filter() held a command back for its step.
+  bool held_back() const noexcept { return held_back_; }
 
  private:
   const model::RobotDescription& robot_;
   std::array<double, core::kMaxJoints> previous_{};
   bool have_previous_ = false;
   double torque_step_ = 0.0;
+  bool held_back_ = false;
 };
 
 }  // namespace footfall::engine

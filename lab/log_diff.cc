@@ -193,6 +193,7 @@ class Comparison {
       std::string text = fmt::format("tick {}", e.tick);
       for (const auto& [slot, value] : e.writes) text += fmt::format(", slot {} = {}", slot, value);
       for (const int event : e.events) text += fmt::format(", event {}", event);
+      if (e.limit_steps) text += ", torque steps limited";
       return text;
     });
   }

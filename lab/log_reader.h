@@ -43,6 +43,7 @@ struct LoggedEdit {
   std::int64_t tick = 0;
   std::vector<std::pair<int, double>> writes;  // slot and value
   std::vector<int> events;                     // into Log::event_names
+  bool limit_steps = false;                    // torque steps were limited in this tick
 };
 
 struct LoggedFile {

@@ -118,6 +118,7 @@ struct Replay::Impl {
         if (event < 0 || event >= static_cast<int>(events.size())) continue;
         trace.events.push_back(events[static_cast<std::size_t>(event)]);
       }
+      trace.limit_steps |= log.edits[edit].limit_steps;
     }
   }
 

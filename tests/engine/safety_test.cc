@@ -63,6 +63,47 @@ TEST_F(Safety, TheFirstTickHasNoStepAndLaterOnesAreOfWhatIsSent) {
   EXPECT_EQ(filter.torque_step(), 0.0);
 }
 
+// Binary fractions make the bound a step that rounding can overshoot.
+TEST_F(Safety, LimitedStepsNeverExceedTheBoundByABitAndReachWhatIsAskedFor) {
+  for (const double bound : {5.0, 0.1, 0.3, 1.0 / 3.0}) {
+    robot.torque_step_limit = bound;
+    engine::SafetyFilter limited{robot};
+    hal::Commands sent;
+    limited.filter(sent, true);
+    std::array<double, 6> before{};
+    for (const double wanted : {-33.3, 48.7, 0.0, 1e-9, 49.99}) {
+      const double away = std::abs(wanted - before[0]);
+      const auto ticks = static_cast<int>(std::ceil(away / bound * (1.0 + 1e-12)));
+      for (int k = 1; k <= ticks; ++k) {
+        for (std::size_t j = 0; j < 6; ++j) sent.tau[j] = wanted;
+        const engine::SafetyFindings findings = limited.filter(sent, true);
+        EXPECT_FALSE(findings.has(Fault::torque_step));
+        EXPECT_EQ(limited.held_back(), sent.tau[0] != wanted);
+        for (std::size_t j = 0; j < 6; ++j) {
+          EXPECT_LE(std::abs(sent.tau[j] - before[j]), bound);
+          before[j] = sent.tau[j];
+        }
+      }
+      EXPECT_EQ(sent.tau[0], wanted) << bound;  // as soon as that rate allows
+    }
+  }
+}
+
+TEST_F(Safety, WithoutABoundNothingIsHeldBackAndWhatIsNotFiniteIsLetGoAtOnce) {
+  hal::Commands commands;
+  commands.tau[0] = 40.0;
+  filter.filter(commands, true);  // the first command has none before it
+  EXPECT_EQ(commands.tau[0], 40.0);
+  commands.tau[0] = std::nan("");
+  filter.filter(commands, true);
+  EXPECT_EQ(commands.tau[0], 0.0);
+  robot.torque_step_limit = 0.0;
+  commands.tau[0] = 45.0;
+  filter.filter(commands, true);
+  EXPECT_EQ(commands.tau[0], 45.0);
+  EXPECT_FALSE(filter.held_back());
+}
+
 TEST_F(Safety, AStandingRobotIsInOrder) {
   model::ControlModel model(robot);
   model.update(standing_state(robot));

@@ -77,6 +77,39 @@ TEST_F(Workshop, ALogReplaysBitForBitFromItselfAlone) {
   EXPECT_TRUE(report.parameters.empty());
 }
 
+// From 100 % to a third in one tick: the torque follows at the robot's bound, and the log says so.
+TEST_F(Workshop, AHardEditReplaysWithTheLimitsThatItHad) {
+  Rig rig(path("balance.yaml"), 3);
+  lab::RunSpec spec;
+  spec.max_time = 1.0;
+  lab::ScheduledEvent event;
+  event.at_time = 0.6;
+  event.label = "edit";
+  event.fire = [&] {
+    engine::EditBatch batch;
+    batch.source = engine::EditSource::scenario;
+    const int height = rig.behavior->find_parameter("gains.dual.height.kp");
+    ASSERT_GE(height, 0);
+    const auto& info = rig.behavior->parameters[static_cast<std::size_t>(height)];
+    const double value = rig.behavior->values[static_cast<std::size_t>(info.slot)];
+    batch.values.push_back(
+        {height, -1, std::vector<double>(static_cast<std::size_t>(info.size), value / 3.0)});
+    EXPECT_EQ(rig.loop->edits().submit(batch).reasons, std::vector<std::string>{});
+  };
+  spec.events.push_back(event);
+  engine::LogWriter writer(path("hard.mcap"), rig.behavior->signals,
+                           lab::make_log_header(*rig.behavior, {}));
+  spec.log = &writer;
+  lab::run(*rig.loop, spec);
+  writer.close();
+  const lab::Log log = lab::read_log(path("hard.mcap"), {.all_rows = true, .inputs = true});
+  ASSERT_FALSE(log.edits.empty());
+  EXPECT_EQ(log.edits.front().tick, 900);
+  EXPECT_TRUE(log.edits.front().limit_steps);
+  lab::Replay replay(log);
+  EXPECT_EQ(lab::verify_replay(log, replay).differs_at, -1);
+}
+
 TEST_F(Workshop, ACutLogReplaysAsFarAsItGoes) {
   run("a.mcap");
   fs::resize_file(path("a.mcap"), fs::file_size(path("a.mcap")) * 2 / 3);
