@@ -1,6 +1,7 @@
 // What a YAML text must be before it is parsed, and how any text is printed. Not in a tick.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -16,5 +17,9 @@ bool check_text(std::string_view text, int file, Diagnostics& diagnostics);
 
 // The text with control characters as `\xHH`: what comes from a file must not break up a line.
 std::string on_one_line(std::string_view text);
+
+// What a stranger sent, for a terminal and a log: control characters and what is not UTF-8 as `?`,
+// cut between characters at `most` bytes.
+std::string printable(std::string_view text, std::size_t most);
 
 }  // namespace footfall::core

@@ -81,7 +81,8 @@ void RunLog::after_tick(const StepEvent& step) {
              loop_.signals().values(), fault || !loop_.machine().transitions_taken().empty());
 }
 
-// What came through the door in this tick, for people; what it did to which tick is in /edits.
+// What came to the door in this tick, and who brought it, for people: `live ann@bench (undo)`; what
+// it did to which tick is in /edits.
 void RunLog::write_edits() {
   const behaviors::Behavior& behavior = loop_.behavior();
   for (std::size_t i = 0; i < loop_.edits().taken(); ++i) {
@@ -95,8 +96,13 @@ void RunLog::write_edits() {
     for (const int e : order.new_events()) {
       text += fmt::format("{}raise {}", text.empty() ? "" : ", ", behavior.events[at(e)]);
     }
-    if (order.outcome != engine::EditOutcome::applied) text += " (refused: stale revision)";
-    event("edit", engine::edit_source_name(order.source), text);
+    const bool refused = order.outcome == engine::EditOutcome::refused;
+    if (refused) text = order.note.view();
+    if (order.outcome == engine::EditOutcome::stale_revision) text += " (refused: stale revision)";
+    std::string name = refused ? "refused" : engine::edit_source_name(order.source);
+    if (!order.who.view().empty()) name += fmt::format(" {}", order.who.view());
+    if (!refused && !order.note.view().empty()) name += fmt::format(" ({})", order.note.view());
+    event("edit", name, text);
   }
 }
 
