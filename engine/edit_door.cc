@@ -12,12 +12,6 @@ EditOrder empty_order(const behaviors::Behavior& behavior) {
   return order;
 }
 
-// What a person turns at once would step the torque: it is spread over the robot's own time.
-double ramp_time(const behaviors::Behavior& behavior, const EditBatch& batch) {
-  const bool spread = batch.source == EditSource::live && behavior.has_robot;
-  return spread ? std::max(batch.over, behavior.robot.edit_ramp) : batch.over;
-}
-
 void fill(EditOrder& order, const behaviors::Behavior& behavior, const EditBatch& batch) {
   order.source = batch.source;
   order.ramp_ticks = behaviors::periods_of(ramp_time(behavior, batch), behavior.rate_mhz);
@@ -41,6 +35,11 @@ bool is_smooth(EditSource source) {
 }
 
 }  // namespace
+
+double ramp_time(const behaviors::Behavior& behavior, const EditBatch& batch) {
+  const bool spread = batch.source == EditSource::live && behavior.has_robot;
+  return spread ? std::max(batch.over, behavior.robot.edit_ramp) : batch.over;
+}
 
 const char* edit_source_name(EditSource source) {
   constexpr const char* kNames[] = {"live", "scenario", "set", "command", "replay"};
