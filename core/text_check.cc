@@ -89,6 +89,8 @@ bool check_text(std::string_view text, int file, Diagnostics& diagnostics) {
   return reports == 0;
 }
 
+bool is_plain_text(std::string_view text) { return !find_bad_text(text); }
+
 std::string on_one_line(std::string_view text) {
   std::string out;
   out.reserve(text.size());

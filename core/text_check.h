@@ -15,6 +15,10 @@ namespace footfall::core {
 // ("tab"). True if there is nothing of the kind.
 bool check_text(std::string_view text, int file, Diagnostics& diagnostics);
 
+// Whether it is UTF-8 (no overlong forms, no surrogates) without control characters other than tab,
+// line feed and carriage return.
+bool is_plain_text(std::string_view text);
+
 // The text with control characters as `\xHH`: what comes from a file must not break up a line.
 std::string on_one_line(std::string_view text);
 
