@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "apps/commands.h"
+#include "apps/live_options.h"
 #include "apps/report_command.h"
 #include "lab/process_pool.h"
 #include "lab/version.h"
@@ -37,6 +38,7 @@ int main(int argc, char** argv) {
   footfall::apps::add_why_command(app, exit_code);
   footfall::apps::add_export_command(app, exit_code);
   try {
+    footfall::apps::join_live_url(argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version

@@ -118,6 +118,7 @@ int run_behavior(const RunOptions& options) {
   lab::RunIdentity id = {behavior->name,           behavior->robot.name, world.name,
                          backend.hardware->name(), options.seed,         "",
                          backend.physics};
+  const auto link = attach_link(options, loop, spec);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
 
@@ -130,6 +131,8 @@ int run_behavior(const RunOptions& options) {
   }
   if (!options.quiet)
     std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);
+  if (!options.quiet && link)
+    std::fputs(live_text(options.live, *link).c_str(), options.json ? stderr : stdout);
   if (!options.quiet && log)
     fmt::print(options.json ? stderr : stdout, "  log          {}\n", id.log);
   int report_code = kGood;
@@ -139,7 +142,11 @@ int run_behavior(const RunOptions& options) {
     report.film = options.film;
     report_code = write_report_files(report, options.json || options.quiet ? stderr : stdout);
   }
-  if (options.json) fmt::print("{}\n", lab::summary_json(id, result).dump());
+  if (options.json) {
+    auto json = lab::summary_json(id, result);
+    if (link) json["live"] = live_json(options.live, *link);
+    fmt::print("{}\n", json.dump());
+  }
   const bool failed = result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault;
   return failed ? kRobotFailed : report_code;
 }

@@ -68,6 +68,7 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_flag("--realtime", o.realtime, "Paced by the wall clock");
   command.add_option("--allow", o.allow, "What the behavior's scripts may reach: files, processes")
       ->check(CLI::IsMember({"files", "processes"}));
+  add_live_options(command, o.live);
   command.add_flag("--json", o.json, "One JSON object as the last line on stdout");
   command.add_flag("--quiet", o.quiet, "No status line, no summary");
   command.footer("Example: footfall run balance --for 20s --push \"40,0.1,90,step 16 phase 0.5\"");

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/live_options.h"
+
 namespace CLI {
 class App;
 }
@@ -32,6 +34,7 @@ struct RunOptions {
   bool json = false;
   bool quiet = false;
   bool realtime = false;
+  LiveOptions live;
   std::vector<std::string> given;  // options that were written, `--seed`
   std::vector<std::string> allow;  // what scripts may reach: files, processes
 };

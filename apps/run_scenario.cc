@@ -98,6 +98,7 @@ int run_scenario_file(RunOptions options) {
   lab::RunIdentity id = {behavior.name,  behavior.robot.name, world.name,
                          sensors.name(), options.seed,        "",
                          backend.physics};
+  const auto link = attach_link(options, loop, spec);
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();
   const bool status = spec.status != nullptr;
@@ -112,6 +113,7 @@ int run_scenario_file(RunOptions options) {
   if (!options.quiet) {
     std::fputs(lab::summary_text(id, done.run).c_str(), people);
     std::fputs(lab::outcome_text(scenario, done.outcome).c_str(), people);
+    if (link) std::fputs(live_text(options.live, *link).c_str(), people);
     if (log) fmt::print(people, "  log          {}\n", id.log);
   }
   int report_code = kGood;

@@ -142,6 +142,17 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
   return spec;
 }
 
+std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
+                                             lab::RunSpec& spec) {
+  auto link = make_link(options.live, loop);
+  spec.link = link.get();
+  if (link && !options.quiet) {
+    fmt::print(options.json ? stderr : stdout, "live at {}: footfall tune\n", options.live.url);
+    std::fflush(options.json ? stderr : stdout);
+  }
+  return link;
+}
+
 void write_file(const std::string& path, const std::string& text) {
   const std::string temporary = path + ".part";
   {

@@ -10,6 +10,7 @@
 #include "apps/commands.h"
 #include "apps/run_options.h"
 #include "engine/control_loop.h"
+#include "engine/lcm_link.h"
 #include "engine/log_writer.h"
 #include "lab/run.h"
 #include "lab/summary.h"
@@ -33,6 +34,10 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world);
 // Time, steps, pace, log rate, status line, counted allocations.
 lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop);
+// Puts a run on the network of live tuning if its options say so, and says where; null if not. What
+// it returns must live as long as the run. Throws what make_link() throws.
+std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
+                                             lab::RunSpec& spec);
 // Set by Ctrl-C from now on.
 const std::atomic<bool>* stop_on_signals();
 // Creates the folder and the log in it, whose path goes to `id`; null with --no-log.

@@ -1,7 +1,7 @@
 // The one door for live edits: a batch of new values and events is checked whole, waits in a
 // bounded queue, and is applied whole or not at all at the start of a tick, before the machine's.
-// Each thread that submits has an entrance of its own; the tick applies what came through the first,
-// then the second; nobody waits for anybody.
+// Each thread that submits has an entrance of its own; the tick applies what came through the
+// first, then the second; nobody waits for anybody.
 #pragma once
 
 #include <array>

@@ -41,8 +41,7 @@ int whole_number(const std::string& url, std::string_view text, const char* what
 
 bool is_multicast(const std::string& group) {
   in_addr address{};
-  return inet_pton(AF_INET, group.c_str(), &address) == 1 &&
-         IN_MULTICAST(ntohl(address.s_addr));
+  return inet_pton(AF_INET, group.c_str(), &address) == 1 && IN_MULTICAST(ntohl(address.s_addr));
 }
 
 // `ttl=1&recv_buf_size=4000000`
@@ -107,11 +106,11 @@ LiveAddress parse_live_url(const std::string& url) {
 }
 
 void check_live_prefix(const std::string& prefix) {
-  const bool good = !prefix.empty() && prefix.size() <= 40 &&
-                    std::ranges::all_of(prefix, [](char c) {
-                      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                             (c >= '0' && c <= '9') || c == '_';
-                    });
+  const bool good =
+      !prefix.empty() && prefix.size() <= 40 && std::ranges::all_of(prefix, [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_';
+      });
   if (good) return;
   throw std::invalid_argument("'" + prefix +
                               "' cannot begin the names of channels: expected 1 to 40 letters, "
@@ -138,9 +137,8 @@ LcmBus::LcmBus(const std::string& url) : impl_(std::make_unique<Impl>()) {
   check_route(address);
   std::string full = fmt::format("udpm://{}:{}?ttl={}", address.group, address.port, address.ttl);
   const std::size_t size = url.find("recv_buf_size=");
-  full += size == std::string::npos
-              ? fmt::format("&recv_buf_size={}", kReceiveBytes)
-              : "&" + url.substr(size, url.find('&', size) - size);
+  full += size == std::string::npos ? fmt::format("&recv_buf_size={}", kReceiveBytes)
+                                    : "&" + url.substr(size, url.find('&', size) - size);
   impl_->lcm = lcm_create(full.c_str());
   if (impl_->lcm == nullptr) throw std::runtime_error("LCM cannot use '" + url + "'");
 }

@@ -244,9 +244,7 @@ void LcmLink::rebind(std::shared_ptr<LinkBinding> binding) noexcept {
   impl_->rebinding.store(true, std::memory_order_release);
 }
 
-bool LcmLink::rebound() const noexcept {
-  return !impl_->rebinding.load(std::memory_order_acquire);
-}
+bool LcmLink::rebound() const noexcept { return !impl_->rebinding.load(std::memory_order_acquire); }
 
 LinkCounters LcmLink::counters() const {
   const std::lock_guard lock(impl_->told_mutex);

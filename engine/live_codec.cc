@@ -218,7 +218,7 @@ PacketBytes encode(Message message, const LiveKey* key) {
   return packet;
 }
 
-#define FOOTFALL_MESSAGE(type)                                                           \
+#define FOOTFALL_MESSAGE(type)                                                                  \
   template PacketProblem decode(std::span<const std::uint8_t>, const LiveKey*, type&) noexcept; \
   template PacketBytes encode(type, const LiveKey*);
 FOOTFALL_MESSAGE(hello_t)

@@ -94,8 +94,9 @@ void fill_telemetry(const LiveSnapshot& snapshot, const behaviors::Behavior& beh
   message.tick = snapshot.tick;
   message.time = snapshot.time;
   message.condition = static_cast<std::int8_t>(snapshot.state);
-  message.active.assign(snapshot.active.begin(),
-                        snapshot.active.begin() + static_cast<std::ptrdiff_t>(snapshot.active_count));
+  message.active.assign(
+      snapshot.active.begin(),
+      snapshot.active.begin() + static_cast<std::ptrdiff_t>(snapshot.active_count));
   message.tasks.clear();
   for (std::size_t t = 0; t < snapshot.task_count; ++t) {
     const behaviors::TaskSignals& task = layout.task[at(snapshot.tasks[t])];

@@ -27,7 +27,7 @@ enum class LoopState : std::uint8_t;
 struct LiveSnapshot {
   bool telemetry = false;  // due; else it is for the values alone
   std::int64_t tick = 0;
-  double time = 0.0;           // s
+  double time = 0.0;  // s
   LoopState state{};
   std::uint64_t revision = 0;  // of the door
   std::int64_t tick_ns = 0, worst_ns = 0;

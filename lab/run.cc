@@ -20,6 +20,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+std::int64_t ns_since(Clock::time_point start) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
+}
+
 class Run {
  public:
   Run(engine::ControlLoop& loop, RunSpec& spec)
@@ -34,6 +38,7 @@ class Run {
       const engine::EditReply reply = loop_.edits().submit(edit);
       if (!reply.accepted()) throw std::runtime_error("--goal: error: " + reply.reasons.front());
     }
+    if (spec_.link) spec_.link->start();
     engine::Pacer pacer(loop_.period());
     started_ = Clock::now();
     while (!ended()) {
@@ -41,6 +46,7 @@ class Run {
       one_tick();
     }
     loop_.safe_stop();
+    if (spec_.link) spec_.link->stop();
     finish();
     return std::move(result_);
   }
@@ -67,9 +73,9 @@ class Run {
     const Clock::time_point before = Clock::now();
     if (spec_.arm_allocations) spec_.arm_allocations(true);
     loop_.compute();
+    if (spec_.link) spec_.link->post(loop_, ns_since(before));
     if (spec_.arm_allocations) spec_.arm_allocations(false);
-    const auto spent = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - before);
-    result_.tick_time.add(spent.count());
+    result_.tick_time.add(ns_since(before));
     const StepEvent step = metrics_.observe(current_goal());
     if (step.foot >= 0) last_step_at_ = loop_.time();
     log_.after_tick(step);

@@ -12,6 +12,7 @@
 
 #include "core/timing_histogram.h"
 #include "engine/control_loop.h"
+#include "engine/lcm_link.h"
 #include "engine/log_writer.h"
 #include "lab/run_end.h"
 #include "lab/run_metrics.h"
@@ -62,6 +63,7 @@ struct RunSpec {
   RunObserver* observer = nullptr;
   bool realtime = false;  // paced by the wall clock
   engine::LogWriter* log = nullptr;
+  engine::LcmLink* link = nullptr;  // live tuning, not started yet; stopped when the run ends
   const std::atomic<bool>* stop = nullptr;       // set by Ctrl-C
   std::function<void(const RunStatus&)> status;  // about five times a second of wall time
   // What a `log:` action or a script said, at its time, s; outside of the tick.
