@@ -120,6 +120,7 @@ nlohmann::ordered_json live_json(const LiveOptions& options, const engine::LcmLi
   }
   return {{"url", options.url},
           {"prefix", options.prefix},
+          {"packets", {{"HELLO", counters.heard_hello}, {"REQUEST", counters.heard_request}}},
           {"requests", counters.requests.requests},
           {"applied", counters.requests.applied},
           {"refused", counters.requests.refused},

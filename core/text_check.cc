@@ -111,8 +111,9 @@ std::string printable(std::string_view text, std::size_t most) {
     const std::size_t length = sequence_length(text);
     const auto lead = static_cast<unsigned char>(text[0]);
     // U+0080 to U+009F are control characters, too: C2 80 to C2 9F.
-    const bool control = lead < 0x20 || lead == 0x7f ||
-                         (lead == 0xc2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xa0);
+    const bool control =
+        lead < 0x20 || lead == 0x7f ||
+        (lead == 0xc2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xa0);
     const std::string_view piece = length == 0 || control ? "?" : text.substr(0, length);
     if (out.size() + piece.size() > most) break;
     out += piece;

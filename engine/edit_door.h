@@ -209,8 +209,8 @@ class EditDoor {
 std::vector<std::string> reasons_against(const behaviors::Behavior& behavior,
                                          const EditBatch& batch, std::uint64_t revision);
 
-// Over which a batch's values move, s: a person's at least over the robot's edit_ramp, since what is
-// turned at once would step the torque.
+// Over which a batch's values move, s: a person's at least over the robot's edit_ramp, since what
+// is turned at once would step the torque.
 double ramp_time(const behaviors::Behavior& behavior, const EditBatch& batch);
 
 // Events that the engine raises itself: they cannot come from outside.

@@ -83,6 +83,7 @@ struct LcmLink::Impl {
 
   void take_hello(std::span<const std::uint8_t> packet) {
     footfall_lcm::hello_t hello;
+    ++counters.heard_hello;
     if (!read(packet, hello)) return;
     ++counters.hellos;
     catalogue_wanted = true;
@@ -90,6 +91,7 @@ struct LcmLink::Impl {
 
   void take_request(std::span<const std::uint8_t> packet) {
     footfall_lcm::request_t request;
+    ++counters.heard_request;
     if (!read(packet, request)) return;
     server.request(request, answers);
     publish_answers();

@@ -27,6 +27,7 @@ struct LinkSettings {
 
 struct LinkCounters {
   LiveCounters requests;
+  std::int64_t heard_hello = 0, heard_request = 0;  // packets on each channel, good or bad
   std::int64_t hellos = 0;
   std::array<std::int64_t, static_cast<std::size_t>(PacketProblem::count)> rejected{};
   std::int64_t telemetry = 0;  // messages sent

@@ -5,12 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <footfall_lcm/answer_t.hpp>
 #include <map>
 #include <optional>
 #include <unordered_map>
 #include <utility>
-
-#include <footfall_lcm/answer_t.hpp>
 
 namespace footfall::engine {
 

@@ -5,7 +5,6 @@
 #include <sodium.h>
 
 #include <algorithm>
-#include <cstring>
 #include <footfall_lcm/answer_t.hpp>
 #include <footfall_lcm/catalogue_t.hpp>
 #include <footfall_lcm/hello_t.hpp>
@@ -212,9 +211,15 @@ PacketBytes encode(Message message, const LiveKey* key) {
   const int size = message.encode(packet.data(), 0, static_cast<int>(packet.size()));
   packet.resize(static_cast<std::size_t>(std::max(0, size)));
   if (!is_signed(layout) || packet.size() < kMacBytes) return packet;
-  std::uint8_t* const mac = packet.data() + packet.size() - kMacBytes;
-  std::memset(mac, 0, kMacBytes);
-  if (key != nullptr) crypto_auth(mac, packet.data(), packet.size() - kMacBytes, key->data());
+  if (key != nullptr) return seal(std::move(packet), *key);
+  std::fill(packet.end() - kMacBytes, packet.end(), std::uint8_t{0});
+  return packet;
+}
+
+PacketBytes seal(PacketBytes packet, const LiveKey& key) {
+  if (packet.size() < kMacBytes) return packet;
+  const std::size_t size = packet.size() - kMacBytes;
+  crypto_auth(packet.data() + size, packet.data(), size, key.data());
   return packet;
 }
 

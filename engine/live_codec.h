@@ -38,4 +38,8 @@ PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
 template <class Message>
 PacketBytes encode(Message message, const LiveKey* key);
 
+// An encoded message whose last 32 bytes are replaced by the `mac` of the others; shorter ones stay
+// as they are.
+PacketBytes seal(PacketBytes packet, const LiveKey& key);
+
 }  // namespace footfall::engine

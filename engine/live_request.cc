@@ -94,8 +94,8 @@ EditBatch read_edit(const Behavior& behavior, const LiveNames& names,
     }
   }
   if (request.events.size() > kMaxEditEvents) {
-    reasons.push_back(fmt::format("{} events: at most {} in one edit", request.events.size(),
-                                  kMaxEditEvents));
+    reasons.push_back(
+        fmt::format("{} events: at most {} in one edit", request.events.size(), kMaxEditEvents));
     return batch;
   }
   for (const std::string& name : request.events) {

@@ -63,10 +63,10 @@ struct LiveServer::Impl {
   LiveNames names;
   LiveSettings settings;
   std::int64_t generation = 0;
-  std::int64_t base = 0;    // changes before this door
-  std::int64_t told = -1;   // revision of the last values
-  std::deque<Pending> pending;     // in the door, in its order
-  std::deque<request_t> waiting;   // for the door's answers
+  std::int64_t base = 0;          // changes before this door
+  std::int64_t told = -1;         // revision of the last values
+  std::deque<Pending> pending;    // in the door, in its order
+  std::deque<request_t> waiting;  // for the door's answers
   std::vector<double> former;
   LiveHistory history;
   LiveClients clients;
@@ -249,8 +249,8 @@ void LiveServer::request(const request_t& request, Answers& answers) {
   const answer_t answer = blank_answer(request, m.settings.session);
   if (m.is_known(request, answer, answers)) return;
   // What is newest is known when all that is in the door was applied, or refused.
-  const bool waits = !m.waiting.empty() ||
-                     (request.what != request_t::EDIT && m.entrance->outstanding() > 0);
+  const bool waits =
+      !m.waiting.empty() || (request.what != request_t::EDIT && m.entrance->outstanding() > 0);
   if (!waits) return m.process(request, answers);
   if (m.waiting.size() < kMostWaiting) {
     m.waiting.push_back(request);

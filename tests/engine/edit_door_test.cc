@@ -414,8 +414,7 @@ TEST_F(EditDoor, TwoThreadsSubmitAtOnceAndNothingIsLost) {
         last = 1e-3 * ++answered;
       }
       EditBatch batch;
-      batch.values.push_back(
-          {parameter("goal"), static_cast<int>(who), {1e-3 * (submitted + 1)}});
+      batch.values.push_back({parameter("goal"), static_cast<int>(who), {1e-3 * (submitted + 1)}});
       if (submitted < kEdits && entrance.submit(batch).accepted()) ++submitted;
     }
     good[who] = in_order;

@@ -117,7 +117,8 @@ TEST(EditLimits, APersonsEditTakesTheRobotsTimeAtLeastAndAScenariosItsOwn) {
 
 // Any value in range of any live parameter or gain, at any moment; the robot may fall by that. The
 // limiter is on in each tick that an edit writes to, and until the command is what is asked for; no
-// such tick steps beyond the bound. What a bad value does to the motion later is not the edit's step.
+// such tick steps beyond the bound. What a bad value does to the motion later is not the edit's
+// step.
 TEST(EditLimits, NoHardEditOfABalancingRobotStepsTheTorqueBeyondTheBound) {
   std::mt19937_64 random(7);
   int edits = 0, held_back = 0;

@@ -105,8 +105,7 @@ class LcmLink : public testing::Test {
     if (link) link->stop();
   }
   std::unique_ptr<LiveClient> client(const LiveKey& key, const std::string& who = "ann") const {
-    return std::make_unique<LiveClient>(
-        engine::LiveClientSettings{url, "FOOTFALL", key, who, 0.1});
+    return std::make_unique<LiveClient>(engine::LiveClientSettings{url, "FOOTFALL", key, who, 0.1});
   }
   static footfall_lcm::request_t set(const char* name, std::vector<double> values) {
     footfall_lcm::request_t request{};
@@ -364,8 +363,7 @@ TEST(LiveUrl, WhatCannotBeIsRefusedWithAReason) {
     }
     return "";
   };
-  const std::string expected =
-      "; expected a URL such as 'udpm://239.255.76.67:7667?ttl=0'";
+  const std::string expected = "; expected a URL such as 'udpm://239.255.76.67:7667?ttl=0'";
   EXPECT_EQ(problem("tcpq://here"),
             "'tcpq://here' is of no network that live tuning can use" + expected);
   EXPECT_EQ(problem("udpm://10.0.0.1:7667"),

@@ -115,8 +115,8 @@ class Server : public testing::Test {
     std::vector<double> targets(bench.machine->parameters().size());
     bench.door->copy_targets(bench.machine->parameters(), targets);
     footfall_lcm::values_t out{};
-    server.fill_values(
-        {bench.now, bench.door->revision(), bench.machine->parameters(), targets}, out);
+    server.fill_values({bench.now, bench.door->revision(), bench.machine->parameters(), targets},
+                       out);
     return out;
   }
 
@@ -216,8 +216,7 @@ TEST_F(LiveServer, WhatCannotBeMeantIsRefused) {
   EXPECT_EQ(reasons(request), "revision -2: -1 or more was expected\n");
   request = ask(request_t::UNDO);
   request.events = {"go"};
-  EXPECT_EQ(reasons(request),
-            "undo: takes no changes or events\nthere is nothing to undo\n");
+  EXPECT_EQ(reasons(request), "undo: takes no changes or events\nthere is nothing to undo\n");
   EXPECT_EQ(reasons(ask(request_t::REDO)), "there is nothing to redo\n");
   request = edit({{"lift_time", {0.1}}, {"lift_time", {0.2}}});
   EXPECT_EQ(reasons(request), "lift_time: given twice\n");
@@ -301,8 +300,8 @@ TEST_F(LiveServer, OfTwoThatExpectOneRevisionTheSecondIsToldAndCanTryAgain) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_TRUE(all[0].accepted);
   EXPECT_FALSE(all[1].accepted);
-  EXPECT_EQ(all[1].reasons,
-            std::vector<std::string>{"revision 1 is in force, another was expected: read it again"});
+  EXPECT_EQ(all[1].reasons, std::vector<std::string>{
+                                "revision 1 is in force, another was expected: read it again"});
   EXPECT_EQ(values().now[0], 0.15);
   ++bob.sequence;
   bob.revision = 1;
@@ -370,15 +369,17 @@ TEST_F(LiveServer, EventsAloneCannotBeUndone) {
 
 TEST_F(LiveServer, TheLogHearsWhoAskedForWhatAndWhatWasRefused) {
   request_t request = edit({{"lift_time", {0.15}}});
-  request.who = "a\x1b[2J\xff" "b\u00e9" + std::string(100, 'x');
+  request.who =
+      "a\x1b[2J\xff"
+      "b\u00e9" +
+      std::string(100, 'x');
   const answer_t told = answer(request);
   const std::string shown = "a?[2J?b\u00e9" + std::string(39, 'x');  // 48 bytes
   EXPECT_EQ(told.who, shown);
   EXPECT_EQ(bench.log.back().who.view(), shown);
   answer(edit({{"lift_time", {9.0}}}));
   EXPECT_EQ(bench.log.back().outcome, engine::EditOutcome::refused);
-  EXPECT_EQ(bench.log.back().note.view(),
-            "lift_time: 9 s is out of its range, 0.08 s to 0.4 s");
+  EXPECT_EQ(bench.log.back().note.view(), "lift_time: 9 s is out of its range, 0.08 s to 0.4 s");
 }
 
 TEST_F(LiveServer, AReloadRefusesWhatWaitsForgetsWhatCouldBeUndoneAndCountsOn) {
