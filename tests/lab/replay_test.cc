@@ -88,6 +88,8 @@ TEST_F(Workshop, AHardEditReplaysWithTheLimitsThatItHad) {
   event.fire = [&] {
     engine::EditBatch batch;
     batch.source = engine::EditSource::scenario;
+    batch.who = "ann@bench";
+    batch.note = "redo";
     const int height = rig.behavior->find_parameter("gains.dual.height.kp");
     ASSERT_GE(height, 0);
     const auto& info = rig.behavior->parameters[static_cast<std::size_t>(height)];
@@ -106,6 +108,10 @@ TEST_F(Workshop, AHardEditReplaysWithTheLimitsThatItHad) {
   ASSERT_FALSE(log.edits.empty());
   EXPECT_EQ(log.edits.front().tick, 900);
   EXPECT_TRUE(log.edits.front().limit_steps);
+  const auto told = std::ranges::find(log.events, "edit", &lab::LoggedEvent::kind);
+  ASSERT_NE(told, log.events.end());
+  EXPECT_EQ(told->name, "scenario ann@bench (redo)");
+  EXPECT_EQ(told->detail, "gains.dual.height.kp = 90");  // a third of 270
   lab::Replay replay(log);
   EXPECT_EQ(lab::verify_replay(log, replay).differs_at, -1);
 }
