@@ -156,8 +156,7 @@ class ControlLoop {
   WriteWatch watch_;
   InputTrace* trace_ = nullptr;
   bool playing_ = false;
-  bool limit_steps_ =
-      false;  // in this tick: an edit moves values, or the command still follows one
+  bool limit_steps_ = false;  // in this tick: an edit acts on the command
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;
 };

@@ -16,7 +16,11 @@ TEST(EscapeTest, SignsOfHtmlBecomeEntitiesAndControlCharactersBlanks) {
 
 TEST(PrintableTest, NothingMovesACursorOrBreaksACharacter) {
   EXPECT_EQ(printable("ann\x1b[2J\r\n\x7f\t", 99), "ann?[2J????");
-  EXPECT_EQ(printable("Größe \xc2\x9b" "1m \xff\xc3(\xed\xa0\x80", 99), "Größe ?1m ??(???");
+  EXPECT_EQ(printable("Größe \xc2\x9b"
+                      "1m \xff\xc3(\xed\xa0\x80",
+                      99),
+            "Größe ?1m ?"
+            "?(???");
   EXPECT_EQ(printable(std::string("a\0b", 3), 99), "a?b");
   EXPECT_EQ(printable("öö", 3), "ö");
   EXPECT_EQ(printable("", 0), "");

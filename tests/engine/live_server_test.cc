@@ -10,12 +10,9 @@
 #include <footfall_lcm/request_t.hpp>
 #include <footfall_lcm/values_t.hpp>
 #include <limits>
-#include <random>
-#include <set>
 
-#include "behaviors/loader.h"
 #include "engine/live_clients.h"
-#include "tests/support/no_measure.h"
+#include "tests/engine/live_rig.h"
 
 namespace footfall::tests {
 namespace {
@@ -23,109 +20,6 @@ namespace {
 using engine::LiveClients;
 using footfall_lcm::answer_t;
 using footfall_lcm::request_t;
-
-constexpr std::int64_t kSession = 4711;
-
-constexpr const char* kTuned = R"(
-behavior: 1
-parameters:
-  lift_time: {value: 145 ms, range: [80 ms, 400 ms], live: true, doc: "of a swing"}
-  goal: {value: [0 m, 0 m], range: [-5 m, 5 m], live: true}
-  fixed: {value: 2 s, range: [1 s, 3 s]}
-events: {go: "from outside", stop: "from outside"}
-machine:
-  states:
-    idle: {transitions: [{on: go, to: gone}]}
-    gone: {transitions: [{on: stop, to: idle}, {when: "$goal.x > 100 m", to: idle}]}
-)";
-
-// A statechart of 1 kHz, its door, and a server at entrance 1.
-struct Bench {
-  Bench() {
-    core::Diagnostics diagnostics;
-    behavior = behaviors::load_behavior_text(kTuned, "chart.yaml", {}, diagnostics);
-    if (!behavior) throw std::runtime_error(diagnostics.to_string());
-    signals = behavior->signals;
-    machine = std::make_unique<behaviors::Machine>(*behavior, signals);
-    door = std::make_unique<engine::EditDoor>(*behavior);
-    machine->start(measure);
-  }
-  void tick() {
-    door->apply(now, *machine);
-    for (std::size_t i = 0; i < door->taken(); ++i) log.push_back(door->taken(i));
-    machine->tick(now++, measure);
-  }
-
-  std::unique_ptr<behaviors::Behavior> behavior;
-  core::SignalTable signals;
-  std::unique_ptr<behaviors::Machine> machine;
-  std::unique_ptr<engine::EditDoor> door;
-  NoMeasure measure;
-  std::int64_t now = 0;
-  std::vector<engine::EditOrder> log;
-};
-
-class Server : public testing::Test {
- protected:
-  // One that changes what is given, as client 1 and the next of its sequence.
-  request_t edit(const std::vector<std::pair<std::string, std::vector<double>>>& changes) {
-    request_t request{};
-    request.session = kSession;
-    request.client = 1;
-    request.sequence = ++sequence;
-    request.who = "ann@bench";
-    request.revision = -1;
-    for (const auto& [name, values] : changes) {
-      footfall_lcm::change_t change{};
-      change.name = name;
-      change.component = -1;
-      change.values = values;
-      request.changes.push_back(change);
-    }
-    return request;
-  }
-  request_t ask(std::int8_t what) {
-    request_t request = edit({});
-    request.what = what;
-    return request;
-  }
-  // The answers of a request that the tick, if it comes to that, handles at once.
-  std::vector<answer_t> answers(const request_t& request) {
-    std::vector<answer_t> all;
-    server.request(request, all);
-    bench.tick();
-    server.poll(all);
-    return all;
-  }
-  answer_t answer(const request_t& request) {
-    const auto all = answers(request);
-    EXPECT_EQ(all.size(), 1U);
-    return all.empty() ? answer_t{} : all.front();
-  }
-  std::string reasons(const request_t& request) {
-    const answer_t a = answer(request);
-    EXPECT_FALSE(a.accepted);
-    EXPECT_EQ(a.tick, -1);
-    EXPECT_EQ(static_cast<std::size_t>(a.reason_count), a.reasons.size());
-    std::string text;
-    for (const std::string& reason : a.reasons) text += reason + "\n";
-    return text;
-  }
-  footfall_lcm::values_t values() {
-    std::vector<double> targets(bench.machine->parameters().size());
-    bench.door->copy_targets(bench.machine->parameters(), targets);
-    footfall_lcm::values_t out{};
-    server.fill_values({bench.now, bench.door->revision(), bench.machine->parameters(), targets},
-                       out);
-    return out;
-  }
-
-  Bench bench;
-  engine::LiveServer server{*bench.behavior, bench.door->entrance(1), {kSession, true}};
-  std::int64_t sequence = 0;
-};
-
-using LiveServer = Server;
 
 TEST_F(LiveServer, AnEditIsAnsweredByTheTickThatAppliedItInWords) {
   request_t request = edit({{"lift_time", {0.15}}, {"goal", {1.0, -2.5}}});
@@ -390,7 +284,7 @@ TEST_F(LiveServer, AReloadRefusesWhatWaitsForgetsWhatCouldBeUndoneAndCountsOn) {
   server.request(edit({{"lift_time", {0.17}}}), all);
   const request_t undo = ask(request_t::UNDO);
   server.request(undo, all);
-  Bench other;
+  LoggedChart other;
   server.rebind(*other.behavior, other.door->entrance(1), "the behavior was reloaded", all);
   ASSERT_EQ(all.size(), 3U);
   EXPECT_TRUE(all[0].accepted);
@@ -423,93 +317,6 @@ TEST_F(LiveServer, AReloadRefusesWhatWaitsForgetsWhatCouldBeUndoneAndCountsOn) {
   ASSERT_EQ(all.size(), 1U);
   EXPECT_TRUE(all[0].accepted);
   EXPECT_EQ(all[0].revision, 4);
-}
-
-// --- Against a naive model: a list of value lists and a place in it. ---
-TEST_F(LiveServer, AnySequenceOfEditsUndosAndRedosIsThatOfANaiveStack) {
-  std::mt19937_64 random(11);
-  const auto uniform = [&](double a, double b) {
-    return std::uniform_real_distribution<double>(a, b)(random);
-  };
-  std::vector<std::vector<double>> states = {{0.145, 0.0, 0.0}};
-  std::size_t place = 0;
-  std::vector<std::pair<request_t, bool>> asked;  // and whether the model says it can be done
-  std::vector<answer_t> all;
-  for (int k = 0; k < 3000; ++k) {
-    const auto dice = random() % 10;
-    request_t request = ask(dice < 3   ? request_t::UNDO
-                            : dice < 5 ? request_t::REDO
-                                       : request_t::EDIT);
-    bool possible = true;
-    if (request.what == request_t::UNDO) {
-      possible = place > 0;
-      place -= possible ? 1 : 0;
-    } else if (request.what == request_t::REDO) {
-      possible = place + 1 < states.size();
-      place += possible ? 1 : 0;
-    } else {
-      std::vector<double> next = states[place];
-      next[0] = uniform(0.08, 0.4);
-      const std::size_t y = random() % 2;
-      next[1 + y] = uniform(-5.0, 5.0);
-      possible = random() % 4 != 0;  // else one of the two is out of range
-      --sequence;
-      request = edit({{"lift_time", {next[0]}},
-                      {y == 0 ? "goal.x" : "goal.y", {possible ? next[1 + y] : 6.0}}});
-      if (possible) {
-        states.resize(place + 1);
-        states.push_back(next);
-        ++place;
-      }
-    }
-    request.over = random() % 3 == 0 ? 5e-3 : 0.0;
-    asked.emplace_back(request, possible);
-    server.request(request, all);
-    if (random() % 3 == 0) bench.tick();
-    server.poll(all);
-    if (random() % 20 != 0 && k < 2999) continue;
-    for (int t = 0; t < 80; ++t) {  // until all is answered
-      bench.tick();
-      server.poll(all);
-    }
-    ASSERT_EQ(values().target, states[place]) << k;
-    ASSERT_EQ(values().now, states[place]) << k;
-    ASSERT_EQ(values().undo_count, static_cast<int>(place));
-    ASSERT_EQ(values().redo_count, static_cast<int>(states.size() - 1 - place));
-  }
-  // Each was answered exactly once, refused where the model could not.
-  std::set<std::int64_t> sequences;
-  for (const answer_t& a : all) {
-    const auto& [request, possible] = asked[static_cast<std::size_t>(a.sequence - 1)];
-    EXPECT_EQ(a.accepted != 0, possible) << a.sequence;
-    sequences.insert(a.sequence);
-  }
-  EXPECT_EQ(all.size(), asked.size());
-  EXPECT_EQ(sequences.size(), asked.size());
-}
-
-TEST(LiveClients, MemoryIsBoundedAndWhatWasForgottenIsTooOld) {
-  using Verdict = LiveClients::Verdict;
-  LiveClients clients(2, 3);
-  const auto done = [&](std::int64_t client, std::int64_t sequence) {
-    EXPECT_EQ(clients.look(client, sequence), Verdict::fresh);
-    EXPECT_EQ(clients.look(client, sequence), Verdict::pending);
-    answer_t answer{};
-    answer.client = client;
-    answer.sequence = sequence;
-    clients.keep(answer);
-  };
-  done(-5, 1);
-  done(-5, 2);
-  done(7, 1);
-  EXPECT_EQ(clients.look(-5, 1), Verdict::answered);
-  EXPECT_EQ(clients.answer().sequence, 1);
-  done(7, 2);
-  EXPECT_EQ(clients.look(-5, 1), Verdict::too_old);
-  EXPECT_EQ(clients.look(-5, 2), Verdict::answered);
-  EXPECT_EQ(clients.look(8, 1), Verdict::too_many);
-  done(7, std::numeric_limits<std::int64_t>::max());
-  EXPECT_EQ(clients.look(7, 3), Verdict::too_old);
 }
 
 }  // namespace
