@@ -25,8 +25,7 @@ struct SetOptions {
 };
 
 // One number of a value, SI; a bare one is SI already.
-std::optional<double> read_number(const core::YamlNode& node,
-                                  const behaviors::ParameterInfo& info,
+std::optional<double> read_number(const core::YamlNode& node, const behaviors::ParameterInfo& info,
                                   core::Diagnostics& diagnostics) {
   return info.bare ? core::read_quantity(node, core::kNone, diagnostics)
                    : core::read_quantity(node, info.dimension, diagnostics);
@@ -68,8 +67,9 @@ bool confirmed(const SetOptions& options) {
 }
 
 int finish(const behaviors::SavePlan& plan, const SetOptions& options) {
-  for (const std::string& note : plan.notes) fmt::print(stderr, "note: {}\n", note);
   fmt::print("{}", behaviors::unified_diff(plan));
+  std::fflush(stdout);
+  for (const std::string& note : plan.notes) fmt::print(stderr, "note: {}\n", note);
   if (plan.files.empty()) fmt::print("{} has these values already\n", options.file);
   if (plan.files.empty() || options.dry_run) return kGood;
   if (!confirmed(options)) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "behaviors/physics_check.h"
 #include "behaviors/save_parts.h"
 #include "core/yaml_edit.h"
 
@@ -13,8 +14,8 @@ namespace {
 std::string path_text(const KeyPath& path) { return fmt::format("{}", fmt::join(path, ".")); }
 
 // The first path at which two trees differ, but for what is allowed.
-std::optional<KeyPath> first_difference(const core::YamlNode& a, const core::YamlNode& b, KeyPath& path,
-                         const std::vector<KeyPath>& allowed) {
+std::optional<KeyPath> first_difference(const core::YamlNode& a, const core::YamlNode& b,
+                                        KeyPath& path, const std::vector<KeyPath>& allowed) {
   const auto is_allowed = [&](const KeyPath& head) { return begins_with(path, head); };
   if (std::ranges::any_of(allowed, is_allowed)) return std::nullopt;
   if (a.kind != b.kind || a.scalar != b.scalar || a.quoted != b.quoted) return path;
@@ -61,8 +62,7 @@ void compare_values(const Behavior& old, const Behavior& now, const std::vector<
     for (int k = 0; k < info.size; ++k) {
       const auto slot = static_cast<std::size_t>(info.slot + k);
       const bool asked = found != wanted.end();
-      const double expected =
-          asked ? found->values[static_cast<std::size_t>(k)] : old.values[slot];
+      const double expected = asked ? found->values[static_cast<std::size_t>(k)] : old.values[slot];
       if (same_bits(now.values[slot], expected)) continue;
       reasons.push_back(
           asked ? fmt::format("{}: it would read back as {}, not {}", info.name, now.values[slot],
@@ -75,12 +75,24 @@ void compare_values(const Behavior& old, const Behavior& now, const std::vector<
   }
 }
 
+// Values that a running behavior bears may be such that `run` refuses to begin with them.
+void note_physics(const Behavior& old, const Behavior& now, core::Diagnostics& diagnostics,
+                  std::vector<std::string>& notes) {
+  core::Diagnostics before = diagnostics;
+  check_physics(old, before);
+  if (before.has_errors()) return;  // it was so before
+  check_physics(now, diagnostics);
+  if (!diagnostics.has_errors()) return;
+  notes.push_back("with these values `run` refuses it: " + first_error(diagnostics));
+}
+
 }  // namespace
 
 std::vector<std::string> reasons_against_result(const SaveSource& old, const std::string& path,
                                                 const std::vector<core::FileChange>& changes,
                                                 const std::vector<Wanted>& wanted,
-                                                const std::vector<KeyPath>& allowed) {
+                                                const std::vector<KeyPath>& allowed,
+                                                std::vector<std::string>& notes) {
   core::Diagnostics diagnostics;
   SaveSource now(old.context.options, diagnostics);
   core::YamlNode root = core::load_changed_yaml_with_base(
@@ -99,6 +111,7 @@ std::vector<std::string> reasons_against_result(const SaveSource& old, const std
     reasons.push_back(fmt::format("{} would change too: it shares its text with what is saved",
                                   path_text(*other)));
   }
+  if (reasons.empty()) note_physics(old.behavior, now.behavior, diagnostics, notes);
   return reasons;
 }
 

@@ -74,8 +74,8 @@ std::string spread_text(const SaveSource& source, const Wanted& wanted, const st
   const double old = source.behavior.values[static_cast<std::size_t>(
       source.behavior.parameters[static_cast<std::size_t>(wanted.parameter)].slot)];
   const bool joints = are_joints(source, wanted.home.axes);
-  const bool some_stay = std::ranges::any_of(
-      wanted.values, [&](double value) { return same_bits(value, old); });
+  const bool some_stay =
+      std::ranges::any_of(wanted.values, [&](double value) { return same_bits(value, old); });
   std::string out = joints && some_stay ? key_and_value("*", like) : "";
   for (std::size_t k = 0; k < wanted.values.size(); ++k) {
     if (joints && some_stay && same_bits(wanted.values[k], old)) continue;
@@ -92,7 +92,8 @@ void edit_map(const Wanted& wanted, const double* old, std::vector<NodeEdit>& ed
   const core::YamlNode& node = *wanted.home.node;
   const auto entries = entries_of(wanted.home);
   const auto add = [&](std::size_t k, const std::string& like, core::Mark near) {
-    edits.push_back({&node, wanted.home.axes[k], near, core::quantity_text(wanted.values[k], like)});
+    edits.push_back(
+        {&node, wanted.home.axes[k], near, core::quantity_text(wanted.values[k], like)});
   };
   for (std::size_t k = 0; k < entries.size(); ++k) {
     if (entries[k] == nullptr && !same_bits(wanted.values[k], old[k])) add(k, "", node.mark);
@@ -174,7 +175,9 @@ std::vector<NodeEdit> edits_in_place(const SaveSource& source, const Wanted& wan
   } else {
     const bool one = std::ranges::all_of(
         wanted.values, [&](double value) { return same_bits(value, wanted.values.front()); });
-    edits.push_back({&node, "", {},
+    edits.push_back({&node,
+                     "",
+                     {},
                      one ? core::quantity_text(wanted.values.front(), node.scalar)
                          : spread_text(source, wanted, node.scalar)});
   }
@@ -191,8 +194,8 @@ std::string whole_text(const SaveSource& source, const Wanted& wanted) {
     const double old = source.behavior.values[static_cast<std::size_t>(info.slot) + k];
     const std::string& written = node.items[k].scalar;
     out += out.empty() ? "" : ", ";
-    out += same_bits(wanted.values[k], old) ? written
-                                            : core::quantity_text(wanted.values[k], written);
+    out +=
+        same_bits(wanted.values[k], old) ? written : core::quantity_text(wanted.values[k], written);
   }
   return "[" + out + "]";
 }

@@ -2,74 +2,22 @@
 #include "behaviors/save_values.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <tuple>
 
 #include "behaviors/load_gains.h"
 #include "behaviors/save_parts.h"
-#include "core/quantity_text.h"
-#include "core/yaml_edit.h"
 #include "core/yaml_write.h"
 
 namespace footfall::behaviors {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string identity(const std::string& path) {
-  std::error_code error;
-  const fs::path real = fs::weakly_canonical(fs::absolute(path, error), error);
-  return error ? path : real.string();
-}
-
-std::optional<std::string> read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
-// A plan while it is being made.
-struct Planner {
-  const SaveSource& source;
-  const core::Diagnostics& files;  // names of the source's files
-  SavePlan& plan;
-  std::string overlay{};  // identity of the only file that may change, if there is one
-  std::vector<Wanted> wanted{};
-  std::vector<KeyPath> allowed{};  // what may differ in the tree
-  struct File {
-    core::FileChange change;
-    std::vector<core::TextEdit> edits;  // of scalars
-    std::vector<std::string> owners;    // of the edits: parameters
-    struct Addition {
-      KeyPath path;
-      std::string text, name;
-    };
-    std::vector<Addition> additions;
-  };
-  std::map<std::string, File> changes{};  // by identity
-
-  const std::string& path_of(core::Mark mark) const { return files.file(mark.file); }
-  const ParameterInfo& info(const Wanted& value) const {
-    return source.behavior.parameters[static_cast<std::size_t>(value.parameter)];
-  }
-  bool may_change(core::Mark mark) const {
-    return overlay.empty() || (mark.file >= 0 && identity(path_of(mark)) == overlay);
-  }
-  void refuse(core::Mark mark, const std::string& name, const std::string& reason) {
-    const std::string place =
-        mark.file < 0 ? ""
-                      : fmt::format("{}:{}:{}: ", path_of(mark), mark.line, mark.column);
-    plan.refusals.push_back(fmt::format("{}{}: {}", place, name, reason));
-  }
-};
 
 // Why there is no parameter of this name.
 std::string unknown_reason(const SaveSource& source, const std::string& name) {
@@ -105,7 +53,7 @@ std::string reason_against(const ParameterInfo& info, const std::vector<double>&
 }
 
 // The parameters that get other values, from what is asked for by name.
-void collect_wanted(Planner& planner, const std::vector<SavedValue>& values) {
+void collect_wanted(SavePlanner& planner, const std::vector<SavedValue>& values) {
   const Behavior& behavior = planner.source.behavior;
   std::map<int, std::vector<std::optional<double>>> asked;  // by parameter, by component
   for (const SavedValue& value : values) {
@@ -149,137 +97,8 @@ void collect_wanted(Planner& planner, const std::vector<SavedValue>& values) {
   }
 }
 
-// The file of a mark, read at its first use; nullptr and a refusal if it cannot be changed.
-Planner::File* open_file(Planner& planner, const std::string& path, core::Mark mark,
-                         const std::string& name) {
-  Planner::File& file = planner.changes[identity(path)];
-  if (!file.change.path.empty()) return &file;
-  file.change.path = path;
-  auto text = read_file(path);
-  if (!text) {
-    planner.refuse(mark, name, fmt::format("{} cannot be read", path));
-    return nullptr;
-  }
-  const std::string folder = fs::path(identity(path)).parent_path().string();
-  if (::access(path.c_str(), W_OK) != 0 || ::access(folder.c_str(), W_OK) != 0) {
-    planner.refuse(mark, name,
-                   fmt::format("{} cannot be written here: save into a file of your own with "
-                               "`base: {}`",
-                               path, fs::path(path).filename().string()));
-    return nullptr;
-  }
-  file.change.before = file.change.after = std::move(*text);
-  return &file;
-}
-
-void change_scalar(Planner& planner, const Wanted& wanted, const NodeEdit& edit) {
-  const core::YamlNode& node = *edit.node;
-  const std::string& name = planner.info(wanted).name;
-  const std::string& path = planner.path_of(node.mark);
-  Planner::File* file = open_file(planner, path, node.mark, name);
-  if (file == nullptr) return;
-  auto found = core::find_scalar(file->change.before, node.mark);
-  const auto unquoted = [](const std::string& text) {
-    const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'');
-    return quoted ? text.substr(1, text.size() - 2) : text;
-  };
-  if (!found || unquoted(found->text) != node.scalar) {
-    planner.refuse(node.mark, name,
-                   "how it is written there is not understood: change the file by hand");
-    return;
-  }
-  const std::string old_text = found->text;
-  const bool quoted = old_text != node.scalar;
-  const bool list = edit.text.front() == '[' || edit.text.front() == '{';
-  found->text = quoted && !list ? old_text.front() + edit.text + old_text.back() : edit.text;
-  for (std::size_t k = 0; k < file->edits.size(); ++k) {
-    if (file->edits[k].begin == found->begin && file->edits[k].text != found->text) {
-      planner.refuse(node.mark, name,
-                     fmt::format("it shares its text with {}, which gets another value",
-                                 file->owners[k]));
-      return;
-    }
-  }
-  planner.plan.places.push_back(
-      {name, path, node.mark.line, node.mark.column, old_text, found->text});
-  file->edits.push_back(std::move(*found));
-  file->owners.push_back(name);
-}
-
-void add_entry(Planner& planner, const Wanted& wanted, const std::string& path, core::Mark mark,
-               KeyPath keys, const std::string& text) {
-  const std::string& name = planner.info(wanted).name;
-  Planner::File* file = open_file(planner, path, mark, name);
-  if (file == nullptr) return;
-  planner.plan.places.push_back({name, file->change.path, 0, 0, "", text});
-  file->additions.push_back({std::move(keys), text, name});
-}
-
-// The texts that change for one parameter, each in the file that it belongs to.
-void place(Planner& planner, const Wanted& wanted) {
-  const std::string& name = planner.info(wanted).name;
-  const ValueHome& home = wanted.home;
-  const bool of_map = home.node->is_map();
-  if (!home.path.empty()) planner.allowed.push_back(home.path);
-  const auto edits = edits_in_place(planner.source, wanted);
-  for (const NodeEdit& edit : edits) {
-    const core::Mark mark = edit.key.empty() ? edit.node->mark : edit.near;
-    KeyPath keys = home.path;
-    if (!planner.may_change(mark)) {
-      if (keys.empty()) {
-        planner.refuse(mark, name, "an alias stands there: what to put over it is not clear");
-        return;
-      }
-      if (of_map) {
-        for (const core::YamlEntry& entry : home.node->entries) {
-          if (&entry.value == edit.node) keys.push_back(entry.key);
-        }
-        if (!edit.key.empty()) keys.push_back(edit.key);
-      }
-      add_entry(planner, wanted, planner.overlay, mark, keys,
-                of_map ? edit.text : whole_text(planner.source, wanted));
-      if (!of_map) return;
-      continue;
-    }
-    if (!edit.key.empty()) {
-      keys.push_back(edit.key);
-      add_entry(planner, wanted, planner.path_of(mark), mark, keys, edit.text);
-      continue;
-    }
-    // An argument of a template stands elsewhere than what it is put into.
-    const auto paths = paths_of(planner.source.context.root, *edit.node);
-    const auto in_home = [&](const KeyPath& path) {
-      return !home.path.empty() && begins_with(path, home.path);
-    };
-    if (paths.size() == 1 && !in_home(paths.front())) planner.allowed.push_back(paths.front());
-    change_scalar(planner, wanted, edit);
-  }
-}
-
-// The changed text of a file; false and refusals if it cannot be made.
-bool finish_file(Planner& planner, Planner::File& file) {
-  auto text = core::apply_edits(file.change.after, file.edits);
-  if (!text) {
-    planner.plan.refusals.push_back(file.change.path + ": two values would change the same text");
-    return false;
-  }
-  for (const auto& addition : file.additions) {
-    core::Diagnostics ignored;
-    const core::YamlNode root = core::load_yaml_text(*text, file.change.path, ignored);
-    const auto edit = core::add_value(*text, root, addition.path, addition.text);
-    if (!edit) {
-      planner.plan.refusals.push_back(
-          fmt::format("{}: {}: there is no good place for {}: change the file by hand",
-                      file.change.path, addition.name, fmt::join(addition.path, ".")));
-      return false;
-    }
-    text = core::apply_edits(*text, {*edit});
-  }
-  file.change.after = std::move(*text);
-  return true;
-}
-
-// How `overlay` names its base: beside it, in a library by its name, else by a path from its folder.
+// How `overlay` names its base: beside it, in a library by its name, else by a path from its
+// folder.
 std::string base_text(const std::string& overlay, const std::string& base,
                       const LoadOptions& options) {
   const fs::path folder = fs::path(identity(overlay)).parent_path();
@@ -315,7 +134,7 @@ bool was_read(const core::Diagnostics& files, const std::string& path) {
   return false;
 }
 
-void note_bases(Planner& planner, const std::string& path) {
+void note_bases(SavePlanner& planner, const std::string& path) {
   for (const core::FileChange& change : planner.plan.files) {
     if (change.is_new || identity(change.path) == identity(path)) continue;
     planner.plan.notes.push_back(
@@ -324,24 +143,23 @@ void note_bases(Planner& planner, const std::string& path) {
   }
 }
 
-void make_plan(Planner& planner, const std::string& path, const std::string& overlay) {
+void make_plan(SavePlanner& planner, const std::string& path, const std::string& overlay) {
   const auto place_of = [](const SavedPlace& place) {
     return std::tie(place.file, place.line, place.column);
   };
   for (const Wanted& wanted : planner.wanted) {
-    if (!planner.plan.refused()) place(planner, wanted);
+    if (!planner.plan.refused()) place_edits(planner, wanted);
   }
-  std::ranges::stable_sort(planner.plan.places, [&](const auto& a, const auto& b) {
-    return place_of(a) < place_of(b);
-  });
+  std::ranges::stable_sort(planner.plan.places,
+                           [&](const auto& a, const auto& b) { return place_of(a) < place_of(b); });
   for (auto& [id, file] : planner.changes) {
     if (planner.plan.refused() || !finish_file(planner, file)) return;
     if (file.change.before != file.change.after) planner.plan.files.push_back(file.change);
   }
   if (planner.plan.refused() || planner.plan.files.empty()) return;
-  planner.plan.refusals = reasons_against_result(
-      planner.source, overlay.empty() ? path : overlay, planner.plan.files, planner.wanted,
-      planner.allowed);
+  planner.plan.refusals =
+      reasons_against_result(planner.source, overlay.empty() ? path : overlay, planner.plan.files,
+                             planner.wanted, planner.allowed, planner.plan.notes);
   note_bases(planner, overlay.empty() ? path : overlay);
 }
 
@@ -354,8 +172,7 @@ SavePlan plan_save(const std::string& path, const LoadOptions& options,
   LoadOptions own = options;
   own.set.clear();
   std::error_code error;
-  const bool new_overlay =
-      !overlay.empty() && !fs::exists(fs::symlink_status(overlay, error));
+  const bool new_overlay = !overlay.empty() && !fs::exists(fs::symlink_status(overlay, error));
   const std::string from = overlay.empty() || new_overlay ? path : overlay;
   core::Diagnostics problems;
   SaveSource source(own, problems);
@@ -369,7 +186,7 @@ SavePlan plan_save(const std::string& path, const LoadOptions& options,
         fmt::format("{}: it is there already and {} is not among its bases", overlay, path));
     return plan;
   }
-  Planner planner{source, problems, plan};
+  SavePlanner planner{source, problems, plan};
   if (!overlay.empty()) planner.overlay = identity(overlay);
   collect_wanted(planner, values);
   if (plan.refused() || planner.wanted.empty()) return plan;

@@ -148,7 +148,8 @@ std::vector<std::string> write_changes(const std::vector<FileChange>& changes) {
   const auto note = [&](const Staged& staged, const std::string& problem) {
     if (!problem.empty()) reasons.push_back(staged.change->path + ": " + problem);
   };
-  for (const FileChange& change : changes) all.push_back({&change, real_path(change.path), {}, false});
+  for (const FileChange& change : changes)
+    all.push_back({&change, real_path(change.path), {}, false});
   for (const Staged& staged : all) note(staged, check_target(*staged.change, staged.target, locks));
   for (Staged& staged : all) {
     if (reasons.empty()) note(staged, stage(staged));

@@ -65,8 +65,8 @@ std::size_t end_of_entry(const std::vector<YamlToken>& tokens, std::size_t k, st
   int depth = 0;
   for (std::size_t i = k; i < tokens.size(); ++i) {
     const YamlToken& token = tokens[i];
-    const bool outside = token.column < column ||
-                         (token.column == column && token.kind != Kind::dash);
+    const bool outside =
+        token.column < column || (token.column == column && token.kind != Kind::dash);
     if (token.kind == Kind::comment) continue;
     if (i > k && depth == 0 && token.begins_line && outside) break;
     if (token.kind == Kind::open) ++depth;
@@ -166,9 +166,9 @@ std::optional<TextEdit> find_scalar(std::string_view text, Mark mark) {
   const auto kind_at = [&](std::size_t i) {
     return i < tokens->size() ? (*tokens)[i].kind : Kind::marker;
   };
-  const bool folded = token.text.find('\n') != kNowhere ||
-                      (token.kind == Kind::plain && kind_at(k + 1) == Kind::plain &&
-                       kind_at(k + 2) != Kind::colon);
+  const bool folded =
+      token.text.find('\n') != kNowhere ||
+      (token.kind == Kind::plain && kind_at(k + 1) == Kind::plain && kind_at(k + 2) != Kind::colon);
   if ((token.kind != Kind::plain && token.kind != Kind::quoted) || folded) return std::nullopt;
   return TextEdit{token.offset, end_of(token), token.text};
 }

@@ -1,5 +1,5 @@
-// Edits of single values in the text of a YAML file: every byte but the value's own stays. Load-time
-// tools only; nothing here knows what the values mean.
+// Edits of single values in the text of a YAML file: every byte but the value's own stays.
+// Load-time tools only; nothing here knows what the values mean.
 #pragma once
 
 #include <cstddef>

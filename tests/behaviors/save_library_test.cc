@@ -52,8 +52,8 @@ std::vector<std::uint64_t> expected_bits(const Behavior& before,
                                          const std::vector<SavedValue>& values) {
   std::vector<double> expected = before.values;
   for (const SavedValue& value : values) {
-    const auto& info = before.parameters.at(
-        static_cast<std::size_t>(before.find_parameter(value.name)));
+    const auto& info =
+        before.parameters.at(static_cast<std::size_t>(before.find_parameter(value.name)));
     std::ranges::copy(value.values, expected.begin() + info.slot);
   }
   return bits(expected);
@@ -176,7 +176,8 @@ std::string random_layout(Random& random) {
     std::string value = quote + number + quote;
     if (k == 1 && random() % 3 == 0) anchor = "&n ", value = anchor + value;
     if (k == 3 && !anchor.empty()) value = "*n ";
-    if (random() % 4 == 0 && k != 1 && k != 3) value = "[" + value + pick({", ", " ,", ",\n         "}) + value + "]";
+    if (random() % 4 == 0 && k != 1 && k != 3)
+      value = "[" + value + pick({", ", " ,", ",\n         "}) + value + "]";
     const std::string name = "p" + std::to_string(k);
     const std::string pad(indent, ' ');
     switch (random() % 4) {
@@ -261,7 +262,9 @@ TEST_F(SaveLayouts, EveryLayoutKeepsItsBytes) {
     // Numbers and their units aside, nothing is another byte.
     static const std::regex quantity(
         "[-+]?[0-9.]+(e[-+]?[0-9]+)?( ?(ms|s|deg|rad|%|Nm/rad|m))?(?![a-z])");
-    const auto blank = [](const std::string& all) { return std::regex_replace(all, quantity, "#"); };
+    const auto blank = [](const std::string& all) {
+      return std::regex_replace(all, quantity, "#");
+    };
     EXPECT_EQ(blank(get("b.yaml")), blank(text));
   }
   EXPECT_GT(saved, count * 6 / 10);  // the rest: an alias whose two names got two values

@@ -28,9 +28,8 @@ TEST_F(SaveOverlay, AValueGoesIntoTheFileThatItCameFrom) {
   EXPECT_EQ(get("base.yaml"), replaced(kBase, "145 ms", "150 ms"));
   EXPECT_EQ(get("top.yaml"), "base: base.yaml\nparameters:\n  u: {value: 4 s}  # mine\n");
   ASSERT_EQ(made.notes.size(), 1u);
-  EXPECT_EQ(made.notes[0],
-            file("base.yaml") + " is a base of " + file("top.yaml") +
-                ": what is written there holds for every behavior on it");
+  EXPECT_EQ(made.notes[0], file("base.yaml") + " is a base of " + file("top.yaml") +
+                               ": what is written there holds for every behavior on it");
   ASSERT_EQ(made.places.size(), 2u);
   EXPECT_EQ(made.places[0].name, "t");
   EXPECT_EQ(made.places[0].file, file("base.yaml"));
@@ -54,10 +53,9 @@ TEST_F(SaveOverlay, ANewFileHoldsOnlyWhatDiffers) {
 }
 
 TEST_F(SaveOverlay, AFileThatIsThereIsEditedInPlace) {
-  put("over.yaml",
-      "# mine\nbase: top.yaml\nparameters:\n  t: {value: 0.2 s}  # slow\n\n# end\n");
-  ASSERT_TRUE(behaviors::write_saved(
-                  plan("top.yaml", {{"t", {0.25}}, {"u", {5.0}}}, "over.yaml")).empty());
+  put("over.yaml", "# mine\nbase: top.yaml\nparameters:\n  t: {value: 0.2 s}  # slow\n\n# end\n");
+  ASSERT_TRUE(
+      behaviors::write_saved(plan("top.yaml", {{"t", {0.25}}, {"u", {5.0}}}, "over.yaml")).empty());
   EXPECT_EQ(get("over.yaml"),
             "# mine\nbase: top.yaml\nparameters:\n  t: {value: 0.25 s}  # slow\n"
             "  u: {value: 5 s}\n\n# end\n");
@@ -81,8 +79,7 @@ TEST_F(SaveOverlay, AnAnchorsUserMayDifferThere) {
       "behavior: 1\nparameters: {a: {value: &x 20 ms}, b: {value: *x}}\n"
       "machine: {states: {a: {after: *x, to: a}}}\n");
   ASSERT_TRUE(behaviors::write_saved(plan("b.yaml", {{"b", {0.03}}}, "over.yaml")).empty());
-  EXPECT_EQ(get("over.yaml"),
-            "behavior: 1\nbase: b.yaml\nparameters:\n  b: {value: 30 ms}\n");
+  EXPECT_EQ(get("over.yaml"), "behavior: 1\nbase: b.yaml\nparameters:\n  b: {value: 30 ms}\n");
 }
 
 TEST_F(SaveOverlay, GainsGoUnderTheirKeys) {
@@ -103,7 +100,8 @@ machine: {stack: s, states: {a: {after: 1 s, to: a}}}
                                           {{"gains.g.height.kd", {21.0}},
                                            {"gains.g.attitude.kp", {1.0, 2.5}},
                                            {"gains.s.rest.kd", {2.0, 2.0, 4.0, 2.0, 2.0, 5.0}}},
-                                          "over.yaml")).empty());
+                                          "over.yaml"))
+                  .empty());
   EXPECT_EQ(get("over.yaml"), R"(behavior: 1
 base: r.yaml
 gains:

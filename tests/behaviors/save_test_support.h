@@ -62,10 +62,9 @@ class SaveTest : public testing::Test {
     return get("b.yaml");
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() /
-      ("footfall_save_" + std::to_string(::getpid()) +
-       testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                  ("footfall_save_" + std::to_string(::getpid()) +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 }  // namespace footfall::tests

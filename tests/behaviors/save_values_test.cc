@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-
 #include "tests/behaviors/save_test_support.h"
 
 namespace footfall::tests {
@@ -16,7 +15,8 @@ class SaveValues : public SaveTest {};
 
 // A pure statechart with these parameters.
 std::string with_parameters(const std::string& parameters) {
-  return "behavior: 1\nparameters:\n" + parameters + "machine: {states: {a: {after: 1 s, to: a}}}\n";
+  return "behavior: 1\nparameters:\n" + parameters +
+         "machine: {states: {a: {after: 1 s, to: a}}}\n";
 }
 
 // A robot's behavior with these gains for height (z), attitude (pitch, roll) and rest (joints).
@@ -34,13 +34,14 @@ machine: {stack: both, states: {a: {after: 1 s, to: a}}}
 }
 
 TEST_F(SaveValues, OnlyTheNumberChangesAndItsUnitStays) {
-  EXPECT_EQ(saved(with_parameters("  t: {value:  145 ms , range: [80 ms, 400 ms], live: true}  # ö\n"
-                                  "  u:   {doc: x, value: \"3cm\"}\n"
-                                  "  v: 7 %       # short\n"),
-                  {{"t", {0.16}}, {"u", {0.04}}, {"v", {0.085}}}),
-            with_parameters("  t: {value:  160 ms , range: [80 ms, 400 ms], live: true}  # ö\n"
-                            "  u:   {doc: x, value: \"4cm\"}\n"
-                            "  v: 8.5 %       # short\n"));
+  EXPECT_EQ(
+      saved(with_parameters("  t: {value:  145 ms , range: [80 ms, 400 ms], live: true}  # ö\n"
+                            "  u:   {doc: x, value: \"3cm\"}\n"
+                            "  v: 7 %       # short\n"),
+            {{"t", {0.16}}, {"u", {0.04}}, {"v", {0.085}}}),
+      with_parameters("  t: {value:  160 ms , range: [80 ms, 400 ms], live: true}  # ö\n"
+                      "  u:   {doc: x, value: \"4cm\"}\n"
+                      "  v: 8.5 %       # short\n"));
 }
 
 TEST_F(SaveValues, LineEndsAndAMissingLastOneStay) {
@@ -67,7 +68,8 @@ TEST_F(SaveValues, AUnitThatCannotSayItGivesWayToSi) {
   for (int k = 0; k < 100 && saved(text, {{"a", {odd}}}).find("rad") == std::string::npos; ++k) {
     odd = std::nextafter(odd, 1.0);
   }
-  EXPECT_EQ(saved(text, {{"a", {odd}}}), with_parameters(fmt::format("  a: {{value: {} rad}}\n", odd)));
+  EXPECT_EQ(saved(text, {{"a", {odd}}}),
+            with_parameters(fmt::format("  a: {{value: {} rad}}\n", odd)));
 }
 
 TEST_F(SaveValues, GainsStandInTheirTable) {
@@ -97,8 +99,10 @@ TEST_F(SaveValues, OneNumberForAllBecomesOneForEach) {
 
 TEST_F(SaveValues, AJointThatLeavesItsPatternGetsAnEntry) {
   const auto rest = [](const std::string& kd) {
-    return with_gains("  g:\n    height: {kp: 9, kd: 1}\n    attitude: {kp: 9, kd: 1}\n"
-                      "    rest:\n      kd:" + kd);
+    return with_gains(
+        "  g:\n    height: {kp: 9, kd: 1}\n    attitude: {kp: 9, kd: 1}\n"
+        "    rest:\n      kd:" +
+        kd);
   };
   // Joints: abduction, hip and knee of the right leg, then of the left.
   EXPECT_EQ(saved(rest(" {\"*knee\": 2, \"*hip\": 3}  # c\n"),
@@ -119,12 +123,14 @@ templates:
     args: [foot, stiff]
     contacts: [right_foot, left_foot]
     tasks:
-      height: {type: com_position, axes: [z], reference: entry, gains: {kp: )" + kp + R"(, kd: $stiff}}
+      height: {type: com_position, axes: [z], reference: entry, gains: {kp: )" +
+           kp + R"(, kd: $stiff}}
     after: 1 s
     to: done
 machine:
   states:
-    pair: {states: {a: {use: t, with: {foot: right_foot, stiff: )" + stiff + R"(}}, done: {type: final}}}
+    pair: {states: {a: {use: t, with: {foot: right_foot, stiff: )" +
+           stiff + R"(}}, done: {type: final}}}
 )";
   };
   EXPECT_EQ(saved(text("100", "20"),
@@ -154,8 +160,9 @@ machine: {states: {step: {mirror: t, with: {foot: right_foot}}}}
   EXPECT_EQ(saved(text, {{left, {120.0}}, {right, {120.0}}}), expected);
   put("b.yaml", text);
   EXPECT_EQ(refusal("b.yaml", {{left, {120.0}}}),
-            right + ": it shares its text with what is saved and would become 120 too "
-                    "(save the same value for both)\n");
+            right +
+                ": it shares its text with what is saved and would become 120 too "
+                "(save the same value for both)\n");
   EXPECT_EQ(refusal("b.yaml", {{left, {120.0}}, {right, {130.0}}}),
             "b.yaml:9:87: " + left + ": it shares its text with " + right +
                 ", which gets another value\n");
@@ -163,8 +170,10 @@ machine: {states: {step: {mirror: t, with: {foot: right_foot}}}}
 
 TEST_F(SaveValues, AnAnchorIsChangedIfAllItsUsersAgree) {
   const auto text = [](const char* number) {
-    return with_parameters(fmt::format("  a: {{value: &x {} ms, range: [1 ms, 9 s], live: true}}\n"
-                                       "  b: {{value: *x}}\n", number));
+    return with_parameters(
+        fmt::format("  a: {{value: &x {} ms, range: [1 ms, 9 s], live: true}}\n"
+                    "  b: {{value: *x}}\n",
+                    number));
   };
   EXPECT_EQ(saved(text("20"), {{"a", {0.03}}, {"b", {0.03}}}), text("30"));
   put("b.yaml", text("20"));
@@ -198,16 +207,18 @@ machine:
   states: {a: {after: 1 s, to: a}}
 )");
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(refusal("b.yaml", {{"gains.g.height.kp", {3.0}}}),
-            "gains.g.height.kp: it is given by an expression, \"= 2*$stiff\": save the parameters in "
-            "it\n");
+  EXPECT_EQ(
+      refusal("b.yaml", {{"gains.g.height.kp", {3.0}}}),
+      "gains.g.height.kp: it is given by an expression, \"= 2*$stiff\": save the parameters in "
+      "it\n");
   EXPECT_EQ(refusal("b.yaml", {{"count", {3.0}}}),
             "b.yaml:5:18: count: it is a variable, which actions set: it is never saved\n");
   EXPECT_EQ(refusal("b.yaml", {{"stif", {3.0}}, {"stiff", {600.0}}, {"gains.g.height.kd", {-1.0}}}),
             "stif: there is no such parameter or gain (did you mean 'stiff'?)\n"
             "b.yaml:4:18: stiff: 600 is outside its range, 0 to 500\n"
             "b.yaml:6:67: gains.g.height.kd: -1 is outside its range, 0 to 50 1/s\n");
-  EXPECT_EQ(refusal("b.yaml", {{"stiff", {nan}}}), "b.yaml:4:18: stiff: nan is not a finite number\n");
+  EXPECT_EQ(refusal("b.yaml", {{"stiff", {nan}}}),
+            "b.yaml:4:18: stiff: nan is not a finite number\n");
   EXPECT_EQ(refusal("b.yaml", {{"stiff", {1.0, 2.0}}}), "stiff: expected 1 values, got 2\n");
   EXPECT_EQ(refusal("b.yaml", {{"stiff", {1.0}}, {"stiff", {2.0}}}),
             "stiff: it is asked for twice, with different values\n");

@@ -33,7 +33,8 @@ TEST(UnifiedDiff, JoinsWhatIsNoMoreThanSixLinesApart) {
 }
 
 TEST(UnifiedDiff, ShowsNewFilesAndMissingLineEnds) {
-  EXPECT_EQ(unified_diff("f", "", "a\nb\n", true), "--- /dev/null\n+++ f\n@@ -0,0 +1,2 @@\n+a\n+b\n");
+  EXPECT_EQ(unified_diff("f", "", "a\nb\n", true),
+            "--- /dev/null\n+++ f\n@@ -0,0 +1,2 @@\n+a\n+b\n");
   EXPECT_EQ(unified_diff("f", "a\nb", "a\nc"),
             "--- f\n+++ f\n@@ -1,2 +1,2 @@\n a\n-b\n\\ No newline at end of file\n+c\n"
             "\\ No newline at end of file\n");
@@ -61,13 +62,16 @@ std::string patched(const std::string& before, const std::string& diff) {
       const std::size_t plus = line.find('+');
       std::sscanf(line.c_str() + plus, "+%d,%d", &new_first, &new_count);
       while (at + (count == 0 ? 0 : 1) < static_cast<std::size_t>(first)) copy();
-      if (line_number != static_cast<std::size_t>(new_first + (new_count == 0))) return "bad: " + line;
+      if (line_number != static_cast<std::size_t>(new_first + (new_count == 0)))
+        return "bad: " + line;
     } else if (line[0] == '+') {
       out += line.substr(1) + "\n", ++line_number;
     } else {
       if (old.at(at) != line.substr(1)) return "not there: " + line;
-      if (line[0] == ' ') copy();
-      else ++at;
+      if (line[0] == ' ')
+        copy();
+      else
+        ++at;
     }
   }
   while (at < old.size()) copy();
@@ -105,17 +109,18 @@ class Folder : public testing::Test {
   std::size_t count() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), {}));
   }
-  fs::path path_ = fs::temp_directory_path() /
-                   ("footfall_change_" + std::to_string(::getpid()) +
-                    testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path path_ =
+      fs::temp_directory_path() / ("footfall_change_" + std::to_string(::getpid()) +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(Folder, WrittenFilesKeepModeAndLinks) {
   put("real", "old");
   ASSERT_EQ(::chmod(file("real").c_str(), 0640), 0);
   fs::create_symlink("real", file("link"));
-  EXPECT_TRUE(write_changes({{file("link"), "old", "new", false},
-                             {file("fresh"), "", "fresh\n", true}}).empty());
+  EXPECT_TRUE(
+      write_changes({{file("link"), "old", "new", false}, {file("fresh"), "", "fresh\n", true}})
+          .empty());
   EXPECT_EQ(get("real"), "new");
   EXPECT_TRUE(fs::is_symlink(file("link")));
   EXPECT_EQ(static_cast<int>(fs::status(file("real")).permissions()), 0640);

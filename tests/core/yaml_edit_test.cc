@@ -42,7 +42,10 @@ TEST(FindScalar, CountsAsTheReaderDoesBehindWideCharactersLineEndsAndByteOrderMa
   EXPECT_EQ(written("µ: {ä: 3 µm}\r\nb: 4 m\r\n", {"µ", "ä"}), "3 µm");
   EXPECT_EQ(written("µ: {ä: 3 µm}\r\nb: 4 m\r\n", {"b"}), "4 m");
   EXPECT_EQ(written("\xEF\xBB\xBF{a: 5, b: 6}", {"b"}), "6");
-  EXPECT_EQ(written("\xEF\xBB\xBF" "a: 5\nb: 6", {"a"}), "5");
+  EXPECT_EQ(written("\xEF\xBB\xBF"
+                    "a: 5\nb: 6",
+                    {"a"}),
+            "5");
 }
 
 TEST(FindScalar, OfAnAliasIsWhatItsAnchorNames) {
@@ -88,8 +91,7 @@ TEST(AddValue, LeavesCommentsEmptyLinesAndNestedBlocksWhereTheyAre) {
             "a:\n  x: 1  # one\n  y: 2\n\n# of b\nb: 3\n");
   EXPECT_EQ(with("a:\n  x:\n    - 1\n    - {u: [1,\n        2]}  # two\nb: 3\n", {"a", "y"}, "2"),
             "a:\n  x:\n    - 1\n    - {u: [1,\n        2]}  # two\n  y: 2\nb: 3\n");
-  EXPECT_EQ(with("a:\n  x:\n  - 1\nb: 3\n", {"a", "y"}, "2"),
-            "a:\n  x:\n  - 1\n  y: 2\nb: 3\n");
+  EXPECT_EQ(with("a:\n  x:\n  - 1\nb: 3\n", {"a", "y"}, "2"), "a:\n  x:\n  - 1\n  y: 2\nb: 3\n");
   EXPECT_EQ(with("a: {x: 1,  # one\n    y: 2  # two\n    }\n", {"a", "z"}, "3"),
             "a: {x: 1,  # one\n    y: 2, z: 3  # two\n    }\n");
 }
