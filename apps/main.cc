@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   footfall::apps::add_reference_command(app, exit_code);
   footfall::apps::add_fmt_command(app, exit_code);
   footfall::apps::add_config_command(app, exit_code);
+  footfall::apps::add_set_command(app, exit_code);
   footfall::apps::add_new_command(app, exit_code);
   footfall::apps::add_report_command(app, exit_code);
   footfall::apps::add_events_command(app, exit_code);

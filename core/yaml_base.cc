@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/yaml.h"
+#include "core/yaml_edit.h"
 
 namespace footfall::core {
 
@@ -92,7 +93,19 @@ struct Chain {
   YamlHistory* history = nullptr;
   const std::vector<std::string>& library;
   Diagnostics& diagnostics;
+  const std::vector<FileChange>* changes = nullptr;  // files that count as written
 };
+
+YamlNode load_file(const std::string& path, const Chain& chain) {
+  if (chain.changes != nullptr) {
+    for (const FileChange& change : *chain.changes) {
+      if (identity(change.path) == identity(path)) {
+        return load_yaml_text(change.after, path, chain.diagnostics);
+      }
+    }
+  }
+  return load_yaml_file(path, chain.diagnostics);
+}
 
 // The file that `base: NAME` means; empty and an error if there is none.
 std::string find_base(const std::string& path, const YamlNode& base, Chain& chain) {
@@ -155,7 +168,7 @@ YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
 YamlNode load_chain(const std::string& path, Chain& chain) {
   const int errors_before = chain.diagnostics.error_count();
   chain.files.push_back(identity(path));
-  YamlNode root = resolve(load_yaml_file(path, chain.diagnostics), path, chain);
+  YamlNode root = resolve(load_file(path, chain), path, chain);
   chain.files.pop_back();
   return chain.diagnostics.error_count() == errors_before ? std::move(root) : YamlNode{};
 }
@@ -165,6 +178,14 @@ YamlNode load_chain(const std::string& path, Chain& chain) {
 YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
                              YamlHistory* history, const std::vector<std::string>& library) {
   Chain chain{{}, history, library, diagnostics};
+  return load_chain(path, chain);
+}
+
+YamlNode load_changed_yaml_with_base(const std::string& path,
+                                     const std::vector<FileChange>& changes,
+                                     Diagnostics& diagnostics,
+                                     const std::vector<std::string>& library) {
+  Chain chain{{}, nullptr, library, diagnostics, &changes};
   return load_chain(path, chain);
 }
 

@@ -39,6 +39,7 @@ class Scanner {
     YamlToken token;
     token.kind = kind;
     token.text = in_.substr(begin, end - begin);
+    token.offset = begin;
     token.column = begin - line_begin_;
     token.begins_line = first_;
     if (first_) token.empty_lines = empty_lines_;

@@ -26,6 +26,7 @@ struct YamlToken {
   };
   Kind kind = Kind::plain;
   std::string text;
+  std::size_t offset = 0;            // of its first byte in the text
   std::size_t column = 0;            // from 0
   bool begins_line = false;          // nothing but blanks before it
   std::size_t empty_lines = 0;       // before its line, if it begins one

@@ -588,6 +588,52 @@ class Graph(Case):
         self.refused(self.graph(path, "-o", "no/such/p.dot"), 3, "no/such/p.dot")
 
 
+class Set(Case):
+    BASE = """behavior: 1
+parameters:
+  t: {value: 145 ms, range: [80 ms, 400 ms], live: true}  # of a step
+  goal: {value: [0, 1]}
+machine: {states: {a: {after: $t, to: a}}}
+"""
+
+    def test_the_diff_is_shown_then_written_and_nothing_else_changes(self):
+        path = self.write("b.yaml", self.BASE)
+        result = self.footfall("set", "b.yaml", "t=0.16", "goal.y=2", "--yes")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("-  t: {value: 145 ms, range", result.stdout)
+        self.assertIn("+  t: {value: 160 ms, range", result.stdout)
+        self.assertTrue(result.stdout.endswith("b.yaml: written\n"))
+        wanted = self.BASE.replace("145 ms", "160 ms").replace("[0, 1]", "[0, 2]")
+        self.assertEqual(pathlib.Path(path).read_text(), wanted)
+        again = self.footfall("set", "b.yaml", "t=160ms", "goal=[0, 2]", "--yes")
+        self.assertEqual((again.returncode, again.stdout), (0, "b.yaml has these values already\n"))
+
+    def test_without_a_yes_nothing_is_written(self):
+        path = self.write("b.yaml", self.BASE)
+        self.assertEqual(self.footfall("set", "b.yaml", "t=0.16", "--dry-run").returncode, 0)
+        result = subprocess.run([BINARY, "set", "b.yaml", "t=0.16"], capture_output=True, text=True, timeout=100,
+                                cwd=self.folder, stdin=subprocess.DEVNULL)
+        self.refused(result, 2, "no terminal to ask on")
+        self.assertEqual(pathlib.Path(path).read_text(), self.BASE)
+
+    def test_a_file_on_top_takes_them_instead(self):
+        path = self.write("b.yaml", self.BASE)
+        self.assertEqual(self.footfall("set", "b.yaml", "t=160ms", "--to", "mine.yaml", "--yes").returncode, 0)
+        self.assertEqual((self.folder / "mine.yaml").read_text(),
+                         "behavior: 1\nbase: b.yaml\nparameters:\n  t: {value: 160 ms}\n")
+        self.assertEqual(pathlib.Path(path).read_text(), self.BASE)
+
+    def test_bad_input(self):
+        path = self.write("b.yaml", self.BASE)
+        for setting, words in (("tt=1", "tt: there is no such"), ("t=1 s", "outside its range"),
+                               ("t=1 N", "expected a time"), ("goal=[1]", "expected 2 values"),
+                               ("t", "NAME=VALUE"), ("t=", "t"), ("t=[", "t")):
+            with self.subTest(setting):
+                self.refused(self.footfall("set", "b.yaml", setting, "--yes"), 2, words)
+        self.refused(self.footfall("set", "none.yaml", "t=1", "--yes"), 2, "none.yaml")
+        self.assertEqual(pathlib.Path(path).read_text(), self.BASE)
+
+
 class Help(Case):
     def test_version(self):
         result = self.footfall("--version")

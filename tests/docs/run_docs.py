@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-QUICK = {"check", "trace", "signals", "config", "fmt", "graph", "new", "schema"}  # commands that run no physics
+QUICK = {"check", "trace", "signals", "config", "set", "fmt", "graph", "new", "schema"}  # commands that run no physics
 
 
 def blocks(text):
