@@ -11,7 +11,7 @@ namespace footfall::core {
 namespace {
 
 using Kind = YamlToken::Kind;
-constexpr std::size_t kNowhere = std::string_view::npos;
+constexpr std::size_t kNoPlace = std::string_view::npos;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // counts in no mark's column
 
 // A text's tokens, their offsets those of the whole text.
@@ -25,19 +25,19 @@ std::optional<std::vector<YamlToken>> tokens_of(std::string_view text) {
 
 std::size_t end_of(const YamlToken& token) { return token.offset + token.text.size(); }
 
-// Index of the token that begins at a mark, kNowhere if none does.
+// Index of the token that begins at a mark, kNoPlace if none does.
 std::size_t token_at(std::string_view text, const std::vector<YamlToken>& tokens, Mark mark) {
-  if (mark.line < 1 || mark.column < 1) return kNowhere;
+  if (mark.line < 1 || mark.column < 1) return kNoPlace;
   std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   for (int line = 1; line < mark.line; ++line) {
     at = text.find('\n', at);
-    if (at == kNowhere) return kNowhere;
+    if (at == kNoPlace) return kNoPlace;
     ++at;
   }
   at += static_cast<std::size_t>(mark.column) - 1;
   const auto found = std::ranges::lower_bound(tokens, at, {}, &YamlToken::offset);
   return found == tokens.end() || found->offset != at
-             ? kNowhere
+             ? kNoPlace
              : static_cast<std::size_t>(found - tokens.begin());
 }
 
@@ -55,7 +55,7 @@ std::size_t follow_alias(const std::vector<YamlToken>& tokens, std::size_t k) {
       return skip_anchors(tokens, before);
     }
   }
-  return kNowhere;
+  return kNoPlace;
 }
 
 // The token behind the last one of the value or entry that begins at `k`, in a block whose keys
@@ -130,7 +130,7 @@ std::optional<TextEdit> add_to_block(std::string_view text, const std::vector<Ya
                                      const YamlNode& map, const std::vector<std::string>& path,
                                      std::size_t first, const std::string& value) {
   const std::size_t key = token_at(text, tokens, map.entries.back().key_mark);
-  if (key == kNowhere) return std::nullopt;
+  if (key == kNoPlace) return std::nullopt;
   const std::size_t column = tokens[key].column;
   if (!tokens[key].begins_line) return std::nullopt;  // `- key: ...`: where others stand is unsure
   const std::size_t last = end_of_entry(tokens, key, column) - 1;
@@ -141,10 +141,10 @@ std::optional<TextEdit> add_to_block(std::string_view text, const std::vector<Ya
     at = tokens[last + 1].offset - tokens[last + 1].column - 1;
   }
   const std::size_t end = text.find('\n', at);
-  const bool crlf = text.find("\r\n") != kNowhere;
+  const bool crlf = text.find("\r\n") != kNoPlace;
   const std::string line_end = crlf ? "\r\n" : "\n";
   const std::string lines = block_lines(path, first, value, column, line_end);
-  if (end == kNowhere) return TextEdit{text.size(), text.size(), line_end + lines};
+  if (end == kNoPlace) return TextEdit{text.size(), text.size(), line_end + lines};
   return TextEdit{end + 1, end + 1, lines + line_end};
 }
 
@@ -154,7 +154,7 @@ std::optional<TextEdit> find_scalar(std::string_view text, Mark mark) {
   const auto tokens = tokens_of(text);
   if (!tokens) return std::nullopt;
   std::size_t k = token_at(text, *tokens, mark);
-  if (k == kNowhere) return std::nullopt;
+  if (k == kNoPlace) return std::nullopt;
   k = skip_anchors(*tokens, k);
   for (int links = 0; k < tokens->size() && (*tokens)[k].kind == Kind::property; ++links) {
     if ((*tokens)[k].text[0] != '*' || links > 100) return std::nullopt;
@@ -167,7 +167,7 @@ std::optional<TextEdit> find_scalar(std::string_view text, Mark mark) {
     return i < tokens->size() ? (*tokens)[i].kind : Kind::marker;
   };
   const bool folded =
-      token.text.find('\n') != kNowhere ||
+      token.text.find('\n') != kNoPlace ||
       (token.kind == Kind::plain && kind_at(k + 1) == Kind::plain && kind_at(k + 2) != Kind::colon);
   if ((token.kind != Kind::plain && token.kind != Kind::quoted) || folded) return std::nullopt;
   return TextEdit{token.offset, end_of(token), token.text};
@@ -187,7 +187,7 @@ std::optional<TextEdit> add_value(std::string_view text, const YamlNode& root,
   const auto tokens = tokens_of(text);
   if (!tokens) return std::nullopt;
   const std::size_t at = token_at(text, *tokens, map->mark);
-  if (at == kNowhere) return std::nullopt;
+  if (at == kNoPlace) return std::nullopt;
   const std::size_t open = skip_anchors(*tokens, at);
   if (open >= tokens->size()) return std::nullopt;
   if ((*tokens)[open].kind == Kind::open && (*tokens)[open].text == "{") {
