@@ -15,9 +15,9 @@
 
 namespace footfall::tests {
 
-inline constexpr std::int64_t kSession = 4711;
+inline constexpr std::int64_t kTunedSession = 4711;
 
-inline constexpr const char* kTuned = R"(
+inline constexpr const char* kTunedChart = R"(
 behavior: 1
 parameters:
   lift_time: {value: 145 ms, range: [80 ms, 400 ms], live: true, doc: "of a swing"}
@@ -32,7 +32,7 @@ machine:
 
 // Keeps what the door showed to the log.
 struct LoggedChart : DooredChart {
-  LoggedChart() : DooredChart(kTuned, 64) {}
+  LoggedChart() : DooredChart(kTunedChart, 64) {}
   void tick() {
     DooredChart::tick();
     for (std::size_t i = 0; i < door->taken(); ++i) log.push_back(door->taken(i));
@@ -47,7 +47,7 @@ class LiveServer : public testing::Test {
   footfall_lcm::request_t edit(
       const std::vector<std::pair<std::string, std::vector<double>>>& changes) {
     footfall_lcm::request_t request{};
-    request.session = kSession;
+    request.session = kTunedSession;
     request.client = 1;
     request.sequence = ++sequence;
     request.who = "ann@bench";
@@ -98,7 +98,7 @@ class LiveServer : public testing::Test {
   }
 
   LoggedChart bench;
-  engine::LiveServer server{*bench.behavior, bench.door->entrance(1), {kSession, true}};
+  engine::LiveServer server{*bench.behavior, bench.door->entrance(1), {kTunedSession, true}};
   std::int64_t sequence = 0;
 };
 

@@ -34,7 +34,7 @@ TEST_F(LiveServer, AnEditIsAnsweredByTheTickThatAppliedItInWords) {
   server.poll(all);
   ASSERT_EQ(all.size(), 1U);
   EXPECT_TRUE(all[0].accepted);
-  EXPECT_EQ(all[0].session, kSession);
+  EXPECT_EQ(all[0].session, kTunedSession);
   EXPECT_EQ(all[0].client, 1);
   EXPECT_EQ(all[0].sequence, 1);
   EXPECT_EQ(all[0].who, "ann@bench");
@@ -174,9 +174,9 @@ TEST_F(LiveServer, RequestsMayOvertakeEachOtherButOldOnesAreNotDoneAgain) {
 
 TEST_F(LiveServer, AnotherSessionsRequestIsRefused) {
   request_t request = edit({{"lift_time", {0.15}}});
-  request.session = kSession + 1;
+  request.session = kTunedSession + 1;
   EXPECT_EQ(reasons(request), "the session is another one: read the catalogue again\n");
-  request.session = kSession;
+  request.session = kTunedSession;
   EXPECT_TRUE(answer(request).accepted);  // it was not counted as seen
 }
 
