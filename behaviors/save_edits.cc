@@ -107,6 +107,10 @@ SavePlanner::File* open_file(SavePlanner& planner, const std::string& path, core
 void place_edits(SavePlanner& planner, const Wanted& wanted) {
   const std::string& name = planner.info(wanted).name;
   const ValueHome& home = wanted.home;
+  if (home.node == nullptr) {
+    planner.refuse({}, name, "where it is written is not known: change the file by hand");
+    return;
+  }
   const bool of_map = home.node->is_map();
   if (!home.path.empty()) planner.allowed.push_back(home.path);
   const auto edits = edits_in_place(planner.source, wanted);
