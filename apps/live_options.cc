@@ -127,6 +127,7 @@ nlohmann::ordered_json live_json(const LiveOptions& options, const engine::LcmLi
           {"repeated", counters.requests.repeated},
           {"hellos", counters.hellos},
           {"rejected", rejected},
+          {"strange_datagrams", counters.strange},
           {"telemetry", counters.telemetry},
           {"telemetry_dropped", counters.dropped}};
 }

@@ -1,11 +1,12 @@
-// LCM's C interface; see lcm_bus.h. Its errors go to stderr and its good() says little, so what can
-// be known before is asked before: the URL's parts, the route.
+// A socket that hears and LCM's C interface, which publishes; see lcm_bus.h. LCM's errors go to
+// stderr, so what can be known before is asked before: the URL's parts, the route.
 #include "engine/lcm_bus.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <lcm/lcm.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -16,13 +17,16 @@
 #include <deque>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/lcm_datagram.h"
 
 namespace footfall::engine {
 namespace {
 
-constexpr int kQueued = 512;            // packets that wait for poll(), of one channel
-constexpr int kMostAtOnce = 512;        // packets of one poll()
-constexpr int kReceiveBytes = 2 << 20;  // asked of the kernel, unless the URL says otherwise
+constexpr int kMostAtOnce = 512;                  // messages of one poll()
+constexpr std::size_t kLargestDatagram = 65'536;  // bytes
 
 [[noreturn]] void refuse(const std::string& url, const std::string& why) {
   throw std::invalid_argument(
@@ -55,7 +59,7 @@ void read_options(const std::string& url, std::string_view options, LiveAddress&
     if (name == "ttl") {
       address.ttl = whole_number(url, value, "ttl", 0, 255);
     } else if (name == "recv_buf_size") {
-      whole_number(url, value, "recv_buf_size", 1, 1 << 30);
+      address.receive_bytes = whole_number(url, value, "recv_buf_size", 1, 1 << 30);
     } else {
       refuse(url, fmt::format("has the option '{}', no 'ttl' or 'recv_buf_size'", name));
     }
@@ -63,23 +67,56 @@ void read_options(const std::string& url, std::string_view options, LiveAddress&
   }
 }
 
-// What LCM would print, as one error that says what to do.
-void check_route(const LiveAddress& address) {
-  const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+sockaddr_in socket_address(const LiveAddress& address) {
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<std::uint16_t>(address.port));
   inet_pton(AF_INET, address.group.c_str(), &to.sin_addr);
-  const bool good =
-      probe >= 0 && ::connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
-  const int problem = errno;
-  if (probe >= 0) ::close(probe);
-  if (good) return;
-  throw std::runtime_error(fmt::format(
-      "no network reaches {} ({}); on one host alone, `ip link set lo up; ip route add {} dev lo` "
-      "(as root) gives it one",
-      address.group, std::strerror(problem), address.group));
+  return to;
 }
+
+class Socket {
+ public:
+  explicit Socket(const LiveAddress& address) : address_(address) {
+    fd_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (fd_ < 0) fail();
+  }
+  ~Socket() { ::close(fd_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+  int fd() const { return fd_; }
+
+  // Of the system's tables: nothing is sent.
+  void check_route() const {
+    const sockaddr_in to = socket_address(address_);
+    if (::connect(fd_, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) fail();
+  }
+
+  // Bound to the group, it hears no other one and nothing that is sent to this host alone.
+  void join() const {
+    const sockaddr_in from = socket_address(address_);
+    const int on = 1;
+    ip_mreq group{};
+    group.imr_multiaddr = from.sin_addr;
+    ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &address_.receive_bytes, sizeof(int));
+    if (::setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
+        ::bind(fd_, reinterpret_cast<const sockaddr*>(&from), sizeof from) != 0 ||
+        ::setsockopt(fd_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) {
+      fail();
+    }
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    const char* const why = std::strerror(errno);
+    throw std::runtime_error(fmt::format(
+        "no network reaches {} ({}); on one host alone, `ip link set lo up; ip route add {} dev "
+        "lo` (as root) gives it one",
+        address_.group, why, address_.group));
+  }
+  LiveAddress address_;
+  int fd_ = -1;
+};
 
 }  // namespace
 
@@ -118,27 +155,44 @@ void check_live_prefix(const std::string& prefix) {
 }
 
 struct LcmBus::Impl {
+  Impl(const LiveAddress& address, std::size_t largest)
+      : socket(address), reader(largest), buffer(kLargestDatagram) {}
   ~Impl() {
     if (lcm != nullptr) lcm_destroy(lcm);
   }
-  static void hand_over(const lcm_recv_buf_t* buffer, const char*, void* context) noexcept {
-    try {
-      (*static_cast<Handler*>(context))(
-          {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
-    } catch (...) {  // an exception through LCM's C code would leave it unusable
+
+  // The next message that is there; false: none is.
+  bool take() {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const ssize_t bytes = ::recvfrom(socket.fd(), buffer.data(), buffer.size(), 0,
+                                     reinterpret_cast<sockaddr*>(&from), &size);
+    if (bytes < 0) return false;
+    const std::uint64_t sender =
+        std::uint64_t{ntohl(from.sin_addr.s_addr)} << 16 | ntohs(from.sin_port);
+    const auto message =
+        reader.take(sender, std::span(buffer).first(static_cast<std::size_t>(bytes)));
+    if (!message) return true;
+    for (auto& [channel, handler] : handlers) {
+      if (channel == message->channel) handler(message->content);
     }
+    return true;
   }
+
+  Socket socket;
+  LcmReader reader;
+  std::vector<std::uint8_t> buffer;
   lcm_t* lcm = nullptr;
-  std::deque<Handler> handlers;  // their places do not change
+  std::vector<std::pair<std::string, Handler>> handlers;
 };
 
-LcmBus::LcmBus(const std::string& url) : impl_(std::make_unique<Impl>()) {
+LcmBus::LcmBus(const std::string& url, std::size_t largest) {
   const LiveAddress address = parse_live_url(url);
-  check_route(address);
-  std::string full = fmt::format("udpm://{}:{}?ttl={}", address.group, address.port, address.ttl);
-  const std::size_t size = url.find("recv_buf_size=");
-  full += size == std::string::npos ? fmt::format("&recv_buf_size={}", kReceiveBytes)
-                                    : "&" + url.substr(size, url.find('&', size) - size);
+  Socket(address).check_route();
+  impl_ = std::make_unique<Impl>(address, largest);
+  impl_->socket.join();
+  const std::string full =
+      fmt::format("udpm://{}:{}?ttl={}", address.group, address.port, address.ttl);
   impl_->lcm = lcm_create(full.c_str());
   if (impl_->lcm == nullptr) throw std::runtime_error("LCM cannot use '" + url + "'");
 }
@@ -146,15 +200,7 @@ LcmBus::LcmBus(const std::string& url) : impl_(std::make_unique<Impl>()) {
 LcmBus::~LcmBus() = default;
 
 void LcmBus::subscribe(const std::string& channel, Handler handler) {
-  Handler& kept = impl_->handlers.emplace_back(std::move(handler));
-  lcm_subscription_t* const subscription =
-      lcm_subscribe(impl_->lcm, channel.c_str(), Impl::hand_over, &kept);
-  if (subscription == nullptr) {
-    throw std::runtime_error(
-        "LCM hears nothing of what it sends: a firewall, or no route for multicast; on one host "
-        "alone, `ip link set lo up; ip route add 239.255.76.67 dev lo` (as root) gives it one");
-  }
-  lcm_subscription_set_queue_capacity(subscription, kQueued);
+  impl_->handlers.emplace_back(channel, std::move(handler));
 }
 
 bool LcmBus::publish(const std::string& channel, std::span<const std::uint8_t> packet) noexcept {
@@ -163,14 +209,20 @@ bool LcmBus::publish(const std::string& channel, std::span<const std::uint8_t> p
 }
 
 int LcmBus::poll(int milliseconds) noexcept {
+  pollfd waiting = {impl_->socket.fd(), POLLIN, 0};
+  if (::poll(&waiting, 1, milliseconds) <= 0) return 0;
   int handled = 0;
-  while (handled < kMostAtOnce &&
-         lcm_handle_timeout(impl_->lcm, handled == 0 ? milliseconds : 0) > 0) {
-    ++handled;
+  for (bool more = true; more && handled < kMostAtOnce;) {
+    try {
+      more = impl_->take();
+    } catch (...) {  // of a handler, or no memory: that message is lost
+    }
+    handled += more ? 1 : 0;
   }
   return handled;
 }
 
-int LcmBus::file_descriptor() const noexcept { return lcm_get_fileno(impl_->lcm); }
+int LcmBus::file_descriptor() const noexcept { return impl_->socket.fd(); }
+std::int64_t LcmBus::strange() const noexcept { return impl_->reader.strange(); }
 
 }  // namespace footfall::engine

@@ -171,6 +171,7 @@ struct LcmLink::Impl {
 
   void tell_counters() {
     counters.requests = server.counters();
+    counters.strange = bus.strange();
     counters.dropped = dropped_before + binding->feed.dropped();
     const std::lock_guard lock(told_mutex);
     told = counters;

@@ -1,6 +1,7 @@
 // An engine on the network of live tuning: a thread that hears requests, hands them to the live
 // server, publishes answers, values, catalogue and telemetry. The tick only leaves copies for it.
-// Nothing that arrives can end the thread or the process; what is refused is counted.
+// Nothing that arrives can end the thread or the process; what is refused is counted. What an
+// engine hears is in one datagram each.
 #pragma once
 
 #include <array>
@@ -30,6 +31,7 @@ struct LinkCounters {
   std::int64_t heard_hello = 0, heard_request = 0;  // packets on each channel, good or bad
   std::int64_t hellos = 0;
   std::array<std::int64_t, static_cast<std::size_t>(PacketProblem::count)> rejected{};
+  std::int64_t strange = 0;    // datagrams that were no LCM messages
   std::int64_t telemetry = 0;  // messages sent
   std::int64_t dropped = 0;    // and that found no room
 

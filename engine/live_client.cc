@@ -26,9 +26,10 @@ namespace {
 using namespace footfall_lcm;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMost = 4096;  // answers and telemetry that wait to be taken
-constexpr double kHelloApart = 0.3;  // s
-constexpr double kSilent = 1.5;      // s without a word, after which another session is believed
+constexpr std::size_t kMost = 4096;          // answers and telemetry that wait to be taken
+constexpr std::size_t kLargest = 4'000'000;  // bytes of a message
+constexpr double kHelloApart = 0.3;          // s
+constexpr double kSilent = 1.5;  // s without a word, after which another session is believed
 
 double seconds_since(Clock::time_point then) {
   return std::chrono::duration<double>(Clock::now() - then).count();
@@ -75,7 +76,7 @@ int index_of(const std::vector<std::string>& names, std::string_view name) {
 }  // namespace
 
 struct LiveClient::Impl {
-  explicit Impl(const LiveClientSettings& how) : settings(how), bus(url_of(how)) {
+  explicit Impl(const LiveClientSettings& how) : settings(how), bus(url_of(how), kLargest) {
     check_live_prefix(how.prefix);
     if (settings.who.empty()) settings.who = user_at_host();
     if (sodium_init() < 0) throw std::runtime_error("this machine gives no random numbers");

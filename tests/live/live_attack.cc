@@ -1,7 +1,8 @@
 // Floods the channels that an engine listens to with damaged packets: of messages at random, of
 // edits that would be valid, with the engine's key, another one and none; and the network itself
 // with damaged datagrams. Nothing of it may change anything. Prints what was sent as JSON.
-//   --url URL --prefix NAME --key FILE --count N (on each channel) --datagrams N --rate R --seed S
+//   --url URL --prefix NAME --key FILE --count N (on each channel) --datagrams N --forge N --rate R
+//   --seed S
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -49,7 +50,12 @@ class Attack {
       send_datagram();
       pace(k);
     }
-    return {{"packets_on_each_channel", count}, {"datagrams", datagrams}};
+    const auto forged = static_cast<std::int64_t>(options_.number("--forge", 0));
+    for (std::int64_t k = 0; k < forged; ++k) {
+      forge();
+      pace(k);
+    }
+    return {{"packets_on_each_channel", count}, {"datagrams", datagrams}, {"forged", forged}};
   }
 
  private:
@@ -85,6 +91,16 @@ class Attack {
       default:  // another type
         return random_.damaged(engine::encode(random_.some<values_t>(), key()));
     }
+  }
+
+  // A valid edit of this session, by somebody who hears everything but has no key.
+  void forge() {
+    request_t edit = edits_->valid();
+    edit.session = client_.catalogue().session;
+    edit.client = 6;
+    edit.sequence = ++sequence_;
+    bus_.publish(settings_.prefix + "_REQUEST",
+                 engine::encode(edit, random_.below(1) == 0 ? &other_key_ : nullptr));
   }
 
   PacketBytes hello() {

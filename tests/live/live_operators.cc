@@ -3,10 +3,10 @@
 // how soon each hears of the other. Prints one JSON object.
 //   --url URL --prefix NAME --key FILE --count N --parameter NAME
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -45,15 +45,14 @@ class Operator {
     info_ = client_.catalogue().parameters[static_cast<std::size_t>(parameter)];
   }
 
-  Seen work(std::int64_t count, double sign) {
+  // Makes so many changes, then listens until all `working` have made theirs, and for a moment
+  // more.
+  Seen work(std::int64_t count, double sign, std::atomic<int>& working) {
     for (std::int64_t done = 0; done < count;) done += change(sign) ? 1 : 0;
-    return seen_;
-  }
-
-  // The other one's last changes.
-  Seen& listen(double seconds) {
-    const auto begin = Clock::now();
-    while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds) hear(0.01);
+    --working;
+    while (working > 0) hear(0.01);
+    const auto end = Clock::now() + std::chrono::milliseconds(600);
+    while (Clock::now() < end) hear(0.01);
     return seen_;
   }
 
@@ -123,11 +122,10 @@ nlohmann::json run(const Options& options) {
   const auto count = static_cast<std::int64_t>(options.number("--count", 100));
   Operator ann(options, "ann"), bob(options, "bob");
   Seen of_ann, of_bob;
-  std::thread other([&] { of_bob = bob.work(count, -0.5); });
-  of_ann = ann.work(count, 1.0);
+  std::atomic<int> working{2};
+  std::thread other([&] { of_bob = bob.work(count, -0.5, working); });
+  of_ann = ann.work(count, 1.0, working);
   other.join();
-  of_ann = ann.listen(0.6);
-  of_bob = bob.listen(0.6);
 
   std::map<std::int64_t, Change> all = of_ann.changes;
   all.insert(of_bob.changes.begin(), of_bob.changes.end());
