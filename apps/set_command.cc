@@ -1,14 +1,13 @@
 // `footfall set`: new values of a behavior's parameters and gains, written where they stand in its
 // files.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <iostream>
 #include <optional>
 
 #include "apps/commands.h"
+#include "apps/save_dialog.h"
 #include "behaviors/loader.h"
 #include "behaviors/save_values.h"
 #include "core/units.h"
@@ -55,34 +54,6 @@ std::optional<behaviors::SavedValue> read_setting(const behaviors::Behavior& beh
   return value;
 }
 
-bool confirmed(const SetOptions& options) {
-  if (options.yes) return true;
-  if (::isatty(STDIN_FILENO) == 0) {
-    throw InputError("error: nothing was written: this is no terminal to ask on (--yes writes)\n");
-  }
-  fmt::print("Write? [y/N] ");
-  std::fflush(stdout);
-  std::string answer;
-  return std::getline(std::cin, answer) && (answer == "y" || answer == "yes");
-}
-
-int finish(const behaviors::SavePlan& plan, const SetOptions& options) {
-  fmt::print("{}", behaviors::unified_diff(plan));
-  std::fflush(stdout);
-  for (const std::string& note : plan.notes) fmt::print(stderr, "note: {}\n", note);
-  if (plan.files.empty()) fmt::print("{} has these values already\n", options.file);
-  if (plan.files.empty() || options.dry_run) return kGood;
-  if (!confirmed(options)) {
-    fmt::print("nothing was written\n");
-    return kRobotFailed;
-  }
-  const auto reasons = behaviors::write_saved(plan);
-  for (const std::string& reason : reasons) fmt::print(stderr, "error: {}\n", reason);
-  if (!reasons.empty()) return kMachineFailed;
-  for (const auto& file : plan.files) fmt::print("{}: written\n", file.path);
-  return kGood;
-}
-
 int set_values(const SetOptions& options) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions load;
@@ -107,7 +78,8 @@ int set_values(const SetOptions& options) {
   const auto plan = behaviors::plan_save(path, load, values, options.to, diagnostics);
   print_diagnostics(diagnostics);
   for (const std::string& reason : plan.refusals) fmt::print(stderr, "error: {}\n", reason);
-  return plan.refused() ? kBadInput : finish(plan, options);
+  if (plan.refused()) return kBadInput;
+  return show_and_write(plan, options.file, options.dry_run, options.yes);
 }
 
 }  // namespace

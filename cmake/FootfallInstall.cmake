@@ -13,6 +13,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATAD
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/behaviors/library ${PROJECT_SOURCE_DIR}/behaviors/scaffolds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/behaviors)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/worlds DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/sim)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/lab/slurm DESTINATION ${CMAKE_INSTALL_DATADIR}/footfall/lab)
+install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/footfall.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME footfall)
 install(EXPORT footfallTargets NAMESPACE footfall:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/footfall)
 set(FOOTFALL_DATA_DIR ${CMAKE_INSTALL_DATADIR}/footfall)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/footfallConfig.cmake.in

@@ -28,7 +28,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kEntrance = 1;  // of the door
 // How often at most, and values at least.
-constexpr milliseconds kCatalogueApart{500}, kValuesApart{20}, kMovingApart{100}, kValuesPause{500};
+constexpr milliseconds kCatalogueApart{100}, kValuesApart{20}, kMovingApart{100}, kValuesPause{500};
 // Of waiting for packets: while an edit is on its way through the tick, else.
 constexpr int kBusyWait = 1, kIdleWait = 5;  // ms
 

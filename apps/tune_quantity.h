@@ -1,0 +1,52 @@
+// Numbers with units as people read, type and step them: `150 ms`, `[220, 237, 400] 1/s^2`.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/units.h"
+
+namespace footfall::apps {
+
+// The unit in which values of one parameter are shown.
+struct DisplayUnit {
+  std::string name;     // `ms`; empty: none
+  double factor = 1.0;  // SI value of 1 of it
+};
+
+// The unit of that dimension that suits a number of this size (SI): `ms` for 0.15 s, `cm` for 0.3
+// m.
+DisplayUnit display_unit(core::Dimension dimension, double size);
+// `150 ms`, with at most this many significant digits.
+std::string shown_value(double value, const DisplayUnit& unit, int digits = 6);
+// `150 ms`, `[220, 237, 400] 1/s^2`.
+std::string shown_values(std::span<const double> values, const DisplayUnit& unit, int digits = 6);
+// The shortest such text that reads back to the same numbers, bit for bit; SI where the unit cannot
+// do that.
+std::string exact_values(std::span<const double> values, const DisplayUnit& unit);
+
+// Numbers read, or what is wrong with the text.
+struct ReadValues {
+  std::vector<double> values;  // SI
+  std::string problem;         // empty: none
+};
+// `150 ms`, `0.15`, `[1 m, 0.5 m]`, `220, 237, 400`, `[1, 2] cm`: bare numbers are SI; one number
+// serves all of `count`.
+ReadValues read_values(std::string_view text, core::Dimension dimension, int count);
+// A duration such as `500ms`, 0 or more; empty: it is none.
+std::optional<double> read_duration(std::string_view text);
+
+// The largest of 1, 2, 5 times a power of ten that is at most `size` (> 0).
+double round_step(double size);
+// A step, in the display unit, for a value that is `nominal` in its file and may be min to max (SI;
+// equal: no range): about a twentieth of the value, at most a fiftieth of the range. From 0 on: at
+// most `first` (SI), whatever the range.
+double default_step(double nominal, double min, double max, double first, const DisplayUnit& unit);
+// The value (SI) `steps` steps of that size further, on the decimal number that a person would
+// write.
+double stepped(double value, double step, double steps, const DisplayUnit& unit);
+
+}  // namespace footfall::apps
