@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <deque>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
@@ -12,6 +14,7 @@
 #include "engine/control_loop.h"
 #include "lab/log_diff.h"
 #include "lab/log_setup.h"
+#include "lab/reload.h"
 #include "lab/replay.h"
 
 namespace footfall::apps {
@@ -26,7 +29,9 @@ void print_lines(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("  {}\n", line);
 }
 
-int verify(const lab::Log& log, lab::Replay& replay) {
+// `name`: of a reload, empty for the log that begins with the run.
+int verify(const std::string& name, const lab::Log& log, lab::Replay& replay) {
+  if (!name.empty()) fmt::print("{}: ", name);
   const lab::ReplayReport report = lab::verify_replay(log, replay);
   if (!report.parameters.empty()) {
     fmt::print("parameters that are not as logged:\n");
@@ -51,6 +56,12 @@ int verify(const lab::Log& log, lab::Replay& replay) {
   return kRobotFailed;
 }
 
+int replay_one(const std::string& name, const lab::Log& log, lab::Replay& replay, bool compare) {
+  if (compare) return verify(name, log, replay);
+  while (replay.next() < replay.end()) replay.tick({});
+  return kGood;
+}
+
 int run_replay(const ReplayArguments& arguments) {
   const lab::Log log = read_whole_log(arguments.log);
   const std::string file = arguments.behavior.empty() ? "" : find_behavior_file(arguments.behavior);
@@ -59,10 +70,19 @@ int run_replay(const ReplayArguments& arguments) {
     std::fputs("warning: the log is another build's; results may differ in the last digits\n",
                stderr);
   }
-  if (arguments.verify) return verify(log, replay);
-  while (replay.next() < replay.end()) replay.tick({});
-  fmt::print("replayed {} ticks, {:.3f} s, to {}\n", replay.next(), replay.loop().time(),
-             replay.state());
+  int code = replay_one("", log, replay, arguments.verify);
+  const std::string folder = std::filesystem::path(log.path).parent_path().string();
+  std::deque<lab::Log> reloads;
+  for (int k = 1; code == kGood && file.empty(); ++k) {
+    const std::string path = lab::reload_log(folder.empty() ? "." : folder, k);
+    if (!std::filesystem::exists(path)) break;
+    reloads.push_back(read_whole_log(path));
+    replay.go_on(reloads.back());
+    code = replay_one(fmt::format("reload-{}", k), reloads.back(), replay, arguments.verify);
+  }
+  if (arguments.verify) return code;
+  fmt::print("replayed {} ticks, {:.3f} s, to {}\n", replay.next(),
+             static_cast<double>(replay.next()) * replay.loop().period(), replay.state());
   return kGood;
 }
 

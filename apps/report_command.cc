@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "apps/log_argument.h"
 #include "apps/output_file.h"
@@ -16,6 +17,7 @@
 #include "core/units.h"
 #include "lab/log_reader.h"
 #include "lab/log_window.h"
+#include "lab/reload.h"
 #include "lab/report.h"
 #include "lab/report_states.h"
 
@@ -50,6 +52,22 @@ lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
     throw std::runtime_error("--from, --to: '" + log.path + "' has nothing between these times");
   }
   return part;
+}
+
+// The other logs of a run with reloads, which are in reports of their own.
+void tell_reloads(const std::filesystem::path& log, std::FILE* stream) {
+  std::filesystem::path folder = log.parent_path();
+  if (folder.filename().string().starts_with("reload-")) folder = folder.parent_path();
+  const std::string run = folder.empty() ? "." : folder.string();
+  std::vector<std::string> logs = {run + "/log.mcap"};
+  for (int k = 1; std::filesystem::exists(lab::reload_log(run, k)); ++k) {
+    logs.push_back(lab::reload_log(run, k));
+  }
+  std::error_code error;
+  for (const std::string& other : logs) {
+    if (logs.size() == 1 || std::filesystem::equivalent(other, log, error)) continue;
+    std::fprintf(stream, "  reloads      the run is also in %s\n", other.c_str());
+  }
 }
 
 // The diagram while the log has the rows around each transition.
@@ -128,6 +146,7 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
         arguments.out.empty() ? (path.parent_path() / "report.html").string() : arguments.out;
     lab::write_report(log, out, options);
     std::fprintf(stream, "  report       %s\n", out.c_str());
+    tell_reloads(path, stream);
     if (!log.complete)
       std::fprintf(stderr, "warning: the log was cut off; the report ends there\n");
     if (!arguments.film.empty()) {

@@ -7,6 +7,7 @@
 #include "apps/commands.h"
 #include "apps/report_command.h"
 #include "apps/run_options.h"
+#include "apps/run_reload.h"
 #include "apps/run_setup.h"
 #include "lab/run.h"
 #include "lab/scenario_loader.h"
@@ -121,11 +122,15 @@ int run_behavior(const RunOptions& options) {
   const auto link = attach_link(options, loop, spec);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
+  LiveFiles live = watch_files(options, loop, *backend.hardware, world, log.get());
+  spec.reloads = live.reloads.get();
 
   const lab::RunResult result = lab::run(loop, spec);
+  live.watch.reset();
   if (spec.status) std::fputs("\r\033[K", stderr);
   if (log) {
     log->close();
+    if (live.reloads) live.reloads->close();
     write_file(options.log + "/summary.json", lab::summary_json(id, result, true).dump(2) + "\n");
     write_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
   }
@@ -135,6 +140,11 @@ int run_behavior(const RunOptions& options) {
     std::fputs(live_text(options.live, *link).c_str(), options.json ? stderr : stdout);
   if (!options.quiet && log)
     fmt::print(options.json ? stderr : stdout, "  log          {}\n", id.log);
+  if (!options.quiet && log && result.reloads > 0) {
+    fmt::print(options.json ? stderr : stdout, "  goes on in   {}{}\n",
+               lab::reload_log(options.log, 1),
+               result.reloads > 1 ? fmt::format(" ... reload-{}", result.reloads) : "");
+  }
   int report_code = kGood;
   if (log && !options.no_report) {
     ReportArguments report;

@@ -66,6 +66,8 @@ void add_run_options(CLI::App& command, RunOptions& o) {
       ->check(positive)
       ->capture_default_str();
   command.add_flag("--realtime", o.realtime, "Paced by the wall clock");
+  command.add_flag("--reload", o.reload,
+                   "A changed behavior file takes over the run, in a state with `reload: ok`");
   command.add_option("--allow", o.allow, "What the behavior's scripts may reach: files, processes")
       ->check(CLI::IsMember({"files", "processes"}));
   add_live_options(command, o.live);

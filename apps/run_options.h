@@ -35,6 +35,7 @@ struct RunOptions {
   bool quiet = false;
   bool realtime = false;
   LiveOptions live;
+  bool reload = false;             // a changed behavior file takes over
   std::vector<std::string> given;  // options that were written, `--seed`
   std::vector<std::string> allow;  // what scripts may reach: files, processes
 };

@@ -19,8 +19,8 @@ namespace {
 
 // What the scenario says itself.
 void refuse_options(const RunOptions& options) {
-  constexpr std::array kSaid = {"--robot", "--world", "--for",  "--steps",
-                                "--push",  "--goal",  "--film", "--goal-velocity"};
+  constexpr std::array kSaid = {"--robot", "--world", "--for",           "--steps", "--push",
+                                "--goal",  "--film",  "--goal-velocity", "--reload"};
   for (const std::string& given : options.given) {
     if (std::ranges::find(kSaid, given) == kSaid.end()) continue;
     throw InputError(given + ": error: a scenario says that itself: " + options.behavior);

@@ -134,8 +134,9 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
   if (!options.quiet) spec.said = said_printer(options);
   if (isatty(STDERR_FILENO) && !options.quiet) {
     spec.status = [](const lab::RunStatus& s) {
-      std::fprintf(stderr, "\r  t %7.2f s   step %5lld   %5.1f x real time   %-40.40s", s.time,
-                   static_cast<long long>(s.steps), s.real_time_factor, s.state.c_str());
+      std::fprintf(stderr, "\r  t %7.2f s   step %5lld   %5.1f x real time   %-40.40s%s\033[K",
+                   s.time, static_cast<long long>(s.steps), s.real_time_factor, s.state.c_str(),
+                   s.note.c_str());
       std::fflush(stderr);
     };
   }
@@ -180,7 +181,32 @@ std::string command_line(const RunOptions& options) {
   return text;
 }
 
+// Logs of an earlier run's reloads would pass for this one's.
+void remove_reloads(const std::string& folder) {
+  for (int k = 1;; ++k) {
+    const fs::path path = fs::path(folder) / fmt::format("reload-{}", k);
+    std::error_code error;
+    if (!fs::exists(path / "log.mcap", error)) return;
+    fs::remove(path / "log.mcap", error);
+    fs::remove(path, error);  // if nobody has put anything else there
+  }
+}
+
 }  // namespace
+
+lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world) {
+  lab::LogSource source;
+  source.world = world.name;
+  source.backend = options.backend;
+  source.world_file = world.path;
+  if (options.backend == "mujoco") source.friction = world.friction;
+  source.settings = loop_settings(options, world);
+  core::Diagnostics ignored;  // they were loaded
+  source.set = split_settings(options.set, ignored);
+  source.command = command_line(options);
+  source.row_every = options.log_all ? 1 : options.log_every;
+  return source;
+}
 
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,
@@ -193,18 +219,9 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
     throw std::runtime_error("cannot create the log's folder '" + options.log +
                              "': " + error.message());
   id.log = options.log + "/log.mcap";
-  lab::LogSource source;
-  source.world = world.name;
-  source.backend = options.backend;
-  source.world_file = world.path;
-  if (options.backend == "mujoco") source.friction = world.friction;
-  source.settings = loop_settings(options, world);
-  core::Diagnostics ignored;  // they were loaded
-  source.set = split_settings(options.set, ignored);
-  source.command = command_line(options);
-  source.row_every = options.log_all ? 1 : options.log_every;
-  return std::make_unique<engine::LogWriter>(id.log, behavior.signals,
-                                             lab::make_log_header(behavior, source));
+  remove_reloads(options.log);
+  return std::make_unique<engine::LogWriter>(
+      id.log, behavior.signals, lab::make_log_header(behavior, log_source(options, world)));
 }
 
 }  // namespace footfall::apps

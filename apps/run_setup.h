@@ -13,6 +13,7 @@
 #include "engine/lcm_link.h"
 #include "engine/log_writer.h"
 #include "lab/run.h"
+#include "lab/run_log.h"
 #include "lab/summary.h"
 #include "sim/mujoco_backend.h"
 
@@ -40,6 +41,8 @@ std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::
                                              lab::RunSpec& spec);
 // Set by Ctrl-C from now on.
 const std::atomic<bool>* stop_on_signals();
+// What a log says of how the run was set up.
+lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);
 // Creates the folder and the log in it, whose path goes to `id`; null with --no-log.
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,

@@ -52,6 +52,7 @@ struct StateInfo {
   int done_region = -1;
   int history = -1;        // slot of a history state
   int control_weight = 0;  // the sum over active states is the index into Behavior::controls
+  bool reload = false;     // while it is active a changed file may take over
 };
 
 struct TransitionInfo {

@@ -73,6 +73,7 @@ void ControlMerge::update(const Measure& measure, bool moved) noexcept {
 // The merged control is that of another configuration, or a state that says where a reference
 // starts or a contact transition begins was entered again.
 bool ControlMerge::changed() const noexcept {
+  if (taken_over_) return true;
   const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
   if (primary_->spec != &spec) return true;
   for (int k = 0; k < primary_->task_count; ++k) {
@@ -83,6 +84,7 @@ bool ControlMerge::changed() const noexcept {
 }
 
 void ControlMerge::rebuild(const Measure& measure) noexcept {
+  taken_over_ = false;
   const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
   other_first_ = control_.has_other && control_.other_weight > 0.5 && !transition_goes_on(spec);
   old_has_other_ = control_.has_other;

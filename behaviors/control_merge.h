@@ -17,6 +17,8 @@
 
 namespace footfall::behaviors {
 
+struct TakeOverMap;
+
 class ControlMerge {
  public:
   ControlMerge(const Behavior& behavior, Statechart& statechart);
@@ -24,6 +26,9 @@ class ControlMerge {
   // After the statechart's tick; `moved`: a transition was taken (or this is the first tick).
   void update(const Measure& measure, bool moved) noexcept;
   const tasks::ActiveControl& control() const noexcept { return control_; }
+  // Goes on from the control of another behavior (control_take_over.cc), after the statechart did.
+  // same_configuration: that is the old one's; else what is in force starts anew.
+  void take_over(const ControlMerge& old, const TakeOverMap& map, bool same_configuration) noexcept;
   // The world's, flat unless set; before the first update.
   void set_surface(const model::HeightSurface& surface) { surface_ = surface; }
 
@@ -70,6 +75,10 @@ class ControlMerge {
   void rebuild(const Measure& measure) noexcept;
   // The contact transition under way is still the one that is asked for.
   bool transition_goes_on(const ControlSpec& spec) const noexcept;
+  const TaskSpec* successor(const TaskSpec& old, const ControlSpec& spec,
+                            const TakeOverMap& map) const noexcept;
+  bool take_bank(Bank& bank, tasks::ControlSet& set, const ControlMerge& from, const Bank& old,
+                 const ControlSpec& spec, const TakeOverMap& map) noexcept;
   void update_transition(const ControlSpec& spec, const Measure& measure) noexcept;
   void begin_transition(const TransitionSpec& transition, const Measure& measure) noexcept;
   void fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec,
@@ -105,6 +114,8 @@ class ControlMerge {
   tasks::ActiveControl control_;
   model::HeightSurface surface_;
   bool old_has_other_ = false;
+  bool taken_over_ = false;   // what is in force is still laid out as in another behavior
+  bool stays_ = false;        // of a take-over: the configuration is the same
   bool other_first_ = false;  // the other law has the greater weight: what it holds is kept
   int transition_ = -1;       // into Behavior::contact_transitions
   std::uint32_t transition_serial_ = 0;

@@ -34,6 +34,7 @@ extern const core::KeyTable kInvokeWithKeys;
 extern const core::KeyTable kContactTransitionKeys;
 extern const std::span<const core::WordSpec> kStateTypes;
 extern const std::span<const core::WordSpec> kHistoryDepths;
+extern const std::span<const core::WordSpec> kReloadWords;
 extern const std::span<const core::WordSpec> kOnLate;
 extern const std::span<const core::WordSpec> kTransitionForms;
 

@@ -20,6 +20,10 @@ constexpr WordSpec kDoneWords[] = {
     {"any", "when one region is in a final state"},
 };
 
+constexpr WordSpec kReloadRows[] = {
+    {"ok", "while the state is active"},
+};
+
 constexpr KeySpec kStateRows[] = {
     key("doc", text_of("a text"), "what it is for, in a line"),
     key("use", name_of("a template"), "instantiates a template; other keys here override its keys"),
@@ -58,6 +62,11 @@ constexpr KeySpec kStateRows[] = {
     key("transitions", list(map_of(kTransitionKeys)), "what may end it; the first enabled wins"),
     key("after", computed(quantity(kTime)), "with `to`: a last transition, this long after entry"),
     key("to", one_or_list(name_of("a state")), "with `after`: where it goes"),
+    key("reload", choice(kReloadRows),
+        "a changed file may take over the run (`run --reload`) when each active innermost state, "
+        "or "
+        "one around it, says so")
+        .otherwise("not here"),
     key("states", by_name(map_of(kStateKeys)), "the states inside, by name"),
 };
 
@@ -196,6 +205,7 @@ constinit const core::KeyTable kContactTransitionKeys = {
     .part = true};
 constinit const std::span<const core::WordSpec> kStateTypes = kStateTypeRows;
 constinit const std::span<const core::WordSpec> kHistoryDepths = kHistoryDepthRows;
+constinit const std::span<const core::WordSpec> kReloadWords = kReloadRows;
 constinit const std::span<const core::WordSpec> kOnLate = kOnLateRows;
 constinit const std::span<const core::WordSpec> kTransitionForms = kTransitionFormRows;
 

@@ -56,7 +56,7 @@ void check_state_keys(LoadContext& context, const StateSource& source, const Sta
   refuse("after", info.kind == StateKind::final || history,
          "a final or history state has no transitions");
   for (const char* key : {"on_entry", "on_exit", "invoke", "stack", "tasks", "contacts", "internal",
-                          "gains", "torque_loop", "contact_transition"}) {
+                          "gains", "torque_loop", "contact_transition", "reload"}) {
     refuse(key, history, "a history state only remembers: it has no actions and no control");
   }
 }
@@ -74,6 +74,9 @@ void add_state(LoadContext& context, StateSource& source, int parent) {
   if (parent >= 0) info.depth = info_of(context, parent).depth + 1;
   if (parent > 0) info.path = info_of(context, parent).path + "." + source.name;
   if (const auto* doc = source.keys.find("doc")) info.doc = doc->scalar;
+  if (const auto* reload = source.keys.find("reload")) {
+    info.reload = core::read_choice(*reload, kReloadWords, context.diagnostics).has_value();
+  }
   read_kind(context, source, info);
   const bool region = parent >= 0 && info_of(context, parent).kind == StateKind::parallel;
   if (region && info.kind == StateKind::final) {

@@ -6,6 +6,7 @@
 #include "behaviors/control_merge.h"
 #include "behaviors/planner_calls.h"
 #include "behaviors/statechart.h"
+#include "behaviors/take_over.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -71,6 +72,32 @@ void Machine::tick(std::int64_t tick, const Measure& measure) noexcept {
   m.started = false;
   for (const int mark : m.statechart.marks()) m.steps += mark == m.behavior.step ? 1.0 : 0.0;
   if (m.behavior.layout.steps >= 0) m.signals[m.behavior.layout.steps] = m.steps;
+}
+
+bool Machine::has_configuration_of(const Machine& old, const TakeOverMap& map) const noexcept {
+  return impl_->statechart.has_configuration_of(old.impl_->statechart, map);
+}
+
+void Machine::take_over(const Machine& old, const TakeOverMap& map) noexcept {
+  Impl& m = *impl_;
+  const Impl& o = *old.impl_;
+  for (std::size_t slot = 0; slot < m.values.size(); ++slot) {
+    const int before = map.slots[slot];
+    m.known_values[slot] = before < 0 ? m.values[slot] : o.known_values[at(before)];
+    if (before >= 0) m.values[slot] = o.values[at(before)];
+  }
+  const bool same = has_configuration_of(old, map);
+  m.statechart.take_over(o.statechart, map);
+  m.control.take_over(o.control, map, same);
+  m.planners.take_over(o.planners, map);
+  m.outside.take_over(o.outside, map.events);
+  m.fault_events.clear();
+  for (const int event : o.fault_events) {
+    if (map.events[at(event)] >= 0) m.fault_events.push_back(map.events[at(event)]);
+  }
+  m.contact = o.contact;
+  m.steps = o.steps;
+  m.started = true;
 }
 
 // Rule 3's order: faults, contacts, planners, parameters, outside ones.

@@ -20,6 +20,8 @@
 
 namespace footfall::behaviors {
 
+struct TakeOverMap;
+
 // Where the machine reads what a task measures now (references start "from what is measured").
 class Measure {
  public:
@@ -67,6 +69,13 @@ class Machine {
   // One macro step per behavior-language section 5 rule 3, then references of the active control.
   // `tick` counts control periods since start (skipped ones included).
   void tick(std::int64_t tick, const Measure& measure) noexcept;
+
+  // Goes on from where the machine of another behavior is, between two ticks, instead of start():
+  // its configuration and clocks (Statechart::take_over), references, parameters' values, events
+  // that wait. The signals hold its last ones. Any number of times, each way.
+  void take_over(const Machine& old, const TakeOverMap& map) noexcept;
+  // Whether its configuration is one of this behavior's.
+  bool has_configuration_of(const Machine& old, const TakeOverMap& map) const noexcept;
 
   const tasks::ActiveControl& control() const noexcept;
   bool finished() const noexcept;  // a final child of the root was entered

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "behaviors/take_over.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -41,6 +42,28 @@ void PlannerCalls::start() noexcept {
     const int point = behavior_.layout.point[c];
     lateral_[c] = -std::sin(yaw) * signals_[point] + std::cos(yaw) * signals_[point + 1];
   }
+}
+
+void PlannerCalls::take_over(const PlannerCalls& old, const TakeOverMap& map) noexcept {
+  for (Call& call : calls_) {
+    call.active = false;
+    call.count = 0;
+    call.next_ask = -1;
+  }
+  for (std::size_t k = 0; k < map.invokes.size(); ++k) {
+    if (map.invokes[k] < 0) continue;
+    Call& call = calls_[at(map.invokes[k])];
+    call.active = old.calls_[k].active;
+    call.serial = old.calls_[k].serial;
+    call.next_ask = old.calls_[k].next_ask;
+  }
+  requests_.clear();
+  events_.clear();
+  for (const int event : old.events_) {
+    if (map.events[at(event)] >= 0) emit(map.events[at(event)]);
+  }
+  lateral_ = old.lateral_;
+  sequence_ = old.sequence_;
 }
 
 void PlannerCalls::update() noexcept {

@@ -13,6 +13,8 @@
 
 namespace footfall::behaviors {
 
+struct TakeOverMap;
+
 // The planner's settings in this tick: `kappa: $name` reads its parameter, live.
 FootPlannerSpec spec_in_force(const PlannerInfo& planner,
                               std::span<const double> parameters) noexcept;
@@ -28,6 +30,9 @@ class PlannerCalls {
   void update() noexcept;
   // Writes the answer's signals; false: it was cancelled, late, or never asked for.
   bool deliver(const PlanAnswer& answer) noexcept;
+
+  // Goes on asking as the calls of another behavior did; what they wait for is not waited for here.
+  void take_over(const PlannerCalls& old, const TakeOverMap& map) noexcept;
 
   std::span<const PlanRequest> requests() const noexcept { return requests_; }
   // Events for the next tick's external queue; the caller clears them.

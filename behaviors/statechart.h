@@ -14,6 +14,8 @@
 
 namespace footfall::behaviors {
 
+struct TakeOverMap;
+
 // One executed `log:` action.
 struct LogRecord {
   int text = 0;  // index into Chart::logs
@@ -27,6 +29,9 @@ class EventQueue {
   bool empty() const noexcept { return count_ == 0; }
   std::size_t room() const noexcept { return items_.size() - static_cast<std::size_t>(count_); }
   bool push(int event) noexcept;
+  void clear() noexcept { count_ = 0; }
+  // What waits in another queue, as `events` names it here (-1: drops it).
+  void take_over(const EventQueue& old, const std::vector<int>& events) noexcept;
   int front() const noexcept { return items_[static_cast<std::size_t>(first_)]; }
   int pop() noexcept;
   int size() const noexcept { return count_; }
@@ -56,6 +61,12 @@ class Statechart {
   void request_safe() noexcept { safe_requested_ = true; }
   // One tick: event-less transitions, internal events, external events until all queues are empty.
   void run() noexcept;
+
+  // Whether the configuration of a chart whose place this one takes is one of this chart.
+  bool has_configuration_of(const Statechart& old, const TakeOverMap& map) const noexcept;
+  // Goes on from the old chart's configuration, clocks, histories and events (no actions are run);
+  // if that is none of this chart's, from its own last one, with new clocks. Between two ticks.
+  void take_over(const Statechart& old, const TakeOverMap& map) noexcept;
 
   std::span<const int> active_states() const noexcept { return active_list_; }
   std::span<const int> active_atomic() const noexcept { return atomic_list_; }
@@ -116,6 +127,12 @@ class Statechart {
   void take_event(EventQueue& queue) noexcept;
   void raise_internal(int event) noexcept;
   void execution_error() noexcept;
+
+  // In another chart's place (statechart_take_over.cc).
+  void take_configuration(const Statechart& old, const TakeOverMap& map) noexcept;
+  void enter_again(std::int64_t tick) noexcept;
+  void find_deadlines(int s, std::int64_t unknown) noexcept;
+  void take_histories(const Statechart& old, const TakeOverMap& map) noexcept;
 
   // Entry sets, Appendix D (statechart_entry.cc).
   void compute_entries(int transition) noexcept;

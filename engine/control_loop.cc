@@ -171,7 +171,11 @@ void ControlLoop::compute() noexcept {
   if (!fresh_ && was_fresh_) react(core::Fault::sensor_stale);  // counted where it was read
   was_fresh_ = fresh_;
   take_inputs();
+  const std::int64_t errors = machine_->faults().of(core::Fault::execution);
   machine_->tick(tick_, measure_);
+  if (machine_->faults().of(core::Fault::execution) > errors && probation_) {
+    failed_by_ = core::Fault::execution;
+  }
   if (trace_ != nullptr) watch_.remember(machine_->parameters());
   observe_support();
   planners_.take(tick_, *machine_);
@@ -195,6 +199,7 @@ void ControlLoop::actuate() noexcept {
 // What comes from outside of the tick, as it arrives now or, in a replay, as it was logged.
 void ControlLoop::take_inputs() noexcept {
   limit_steps_ = playing_ ? trace_->limit_steps : is_edited();
+  taken_over_ = false;
   if (trace_ == nullptr) {
     planners_.deliver(tick_, *machine_, nullptr);
     if (scripts_) scripts_->deliver(*machine_);
@@ -217,9 +222,10 @@ void ControlLoop::take_inputs() noexcept {
   }
 }
 
-// Whether an edit moves values in this tick, or the command has not caught up with one yet.
+// Whether an edit moves values in this tick or a behavior took over before it, or the command has
+// not caught up with one yet.
 bool ControlLoop::is_edited() const noexcept {
-  return edits_.moved() || (limit_steps_ && safety_.held_back());
+  return edits_.moved() || taken_over_ || (limit_steps_ && safety_.held_back());
 }
 
 // A fault is counted and raised when it appears; it must go away before it counts again.
@@ -240,8 +246,18 @@ void ControlLoop::handle(const SafetyFindings& findings) noexcept {
   }
 }
 
+bool ControlLoop::is_grave(std::size_t fault) const noexcept {
+  const auto which = static_cast<core::Fault>(fault);
+  return which == core::Fault::fall || which == core::Fault::simulator_warning ||
+         behavior_.robot.reactions[fault] != core::Reaction::keep_going;
+}
+
 void ControlLoop::react(core::Fault fault) noexcept {
   const core::Reaction reaction = behavior_.robot.reactions[static_cast<std::size_t>(fault)];
+  if (probation_ && is_grave(static_cast<std::size_t>(fault))) {
+    failed_by_ = fault;
+    return;
+  }
   machine_->raise_fault(fault, reaction);
   if (fault == core::Fault::fall || fault == core::Fault::simulator_warning) {
     if (state_ != LoopState::fallen) ended_by_ = fault;

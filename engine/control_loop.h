@@ -34,6 +34,12 @@ struct LoopSettings {
   model::HeightSurface surface;  // of the world, for references that follow it
 };
 
+// How values that differ come in force when a loop takes over.
+enum class ValueChange : std::uint8_t {
+  ramped,   // over the robot's time for edits
+  at_once,  // back to what was known to be good
+};
+
 enum class LoopState : std::uint8_t {
   running,
   finished,  // the behavior reached a final state of its root
@@ -97,6 +103,19 @@ class ControlLoop {
   void play(InputTrace& trace);
   bool fresh() const noexcept { return fresh_; }  // whether the last sense() read something new
 
+  // Between two ticks, instead of start(): goes on from where another loop over the same hardware
+  // is, whose behavior's robot is the same (take_over.cc). Both must have been built before;
+  // allocates nothing. Any number of times, each way. How values come in force: see
+  // EditDoor::take_over.
+  void take_over(ControlLoop& old, const behaviors::TakeOverMap& map, ValueChange change) noexcept;
+  // Whether this loop may do that now: the old behavior permits it (`reload: ok`), its
+  // configuration is one of this behavior's, and no contact transition is under way.
+  bool may_take_over(const ControlLoop& old, const behaviors::TakeOverMap& map) const noexcept;
+  // While it is on probation, a fault with a reaction is remembered and not reacted to; so is
+  // error.execution. Whoever put the loop on probation asks before actuate().
+  void set_probation(bool on) noexcept;
+  core::Fault failed_by() const noexcept { return failed_by_; }  // Fault::count: none yet
+
   // Ends the run: the machine's safe state, then the hardware's safe stop.
   void safe_stop() noexcept;
 
@@ -116,6 +135,8 @@ class ControlLoop {
   };
 
   void handle(const SafetyFindings& findings) noexcept;
+  bool is_grave(std::size_t fault) const noexcept;  // it ends the run or has a reaction
+  void take_signals(const ControlLoop& old, const behaviors::TakeOverMap& map) noexcept;
   void react(core::Fault fault) noexcept;
   void observe_support() noexcept;
   void write_measured_signals() noexcept;
@@ -152,10 +173,13 @@ class ControlLoop {
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
   std::array<FaultPlace, core::kFaultCount> last_place_{}, worst_place_{};
   core::Fault ended_by_ = core::Fault::count;
+  core::Fault failed_by_ = core::Fault::count;
+  bool probation_ = false;
   bool fresh_ = true, was_fresh_ = true;  // new sensor data in this tick, in the previous
   WriteWatch watch_;
   InputTrace* trace_ = nullptr;
   bool playing_ = false;
+  bool taken_over_ = false;   // since the last tick
   bool limit_steps_ = false;  // in this tick: an edit acts on the command
   std::int64_t tick_ = 0;
   LoopState state_ = LoopState::running;

@@ -17,6 +17,10 @@
 #include "behaviors/machine.h"
 #include "core/ring.h"
 
+namespace footfall::behaviors {
+struct TakeOverMap;
+}
+
 namespace footfall::engine {
 
 // Who asks. `set` and `command` may also write what is not live, within its range.
@@ -185,12 +189,31 @@ class EditDoor {
   // Where each of `values` goes: the end of its ramp, itself if it is at rest.
   void copy_targets(std::span<const double> values, std::span<double> targets) const noexcept;
 
+  // Between two ticks, in the place of another behavior's door (take_over.cc).
+  struct TakeOver {
+    const behaviors::Behavior& from;
+    const behaviors::Behavior& to;  // this door's
+    const behaviors::TakeOverMap& map;
+    std::span<const double> before;  // values in force so far, of `from`
+    std::span<const double> own;     // of this door's machine, which will go on from `before`
+    std::int64_t tick = 0;
+    std::int64_t periods = 0;  // over which values go to where they are to be; 0: in this tick
+  };
+  // An edited value stays where the two files say the same, else the own one comes in force. What
+  // waits in the old door is answered there with stale_revision, since the revision grows by one.
+  void take_over(EditDoor& old, const TakeOver& change) noexcept;
+  // Nothing ramps any more: what moved stays where it is.
+  void rest() noexcept;
+
  private:
   struct Ramp {
     double from = 0.0, to = 0.0;
     std::int64_t start = 0, ticks = 0;  // ticks 0: at rest
     bool smooth = false;                // torque steps are to be limited
   };
+  void take_slot(const EditDoor& old, const behaviors::ParameterInfo& info, int slot, double own,
+                 const TakeOver& change) noexcept;
+  void refuse_waiting(EditEntrance& entrance, std::int64_t tick, std::uint64_t revision) noexcept;
   void advance_ramps(std::int64_t tick, std::span<double> values) noexcept;
   void take(EditEntrance& entrance, std::int64_t tick, behaviors::Machine& machine) noexcept;
   void write(const EditOrder& order, std::int64_t tick, std::span<double> values,

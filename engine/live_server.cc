@@ -316,7 +316,7 @@ void LiveServer::rebind(const Behavior& behavior, EditEntrance& entrance, const 
   m.behavior = &behavior;
   m.entrance = &entrance;
   m.names = LiveNames(behavior);
-  m.base = next;
+  m.base = next - static_cast<std::int64_t>(entrance.revision());  // a reload's door counts on
   m.history.clear();
   ++m.generation;
   for (const Impl::Pending& p : std::exchange(m.pending, {})) {

@@ -36,6 +36,22 @@ void PlannerLink::start() noexcept {
   head_ = count_ = 0;
 }
 
+void PlannerLink::take_over(const PlannerLink& old, const std::vector<int>& planners,
+                            const model::ControlModel& now) noexcept {
+  const auto& com = now.com();
+  filtered_velocity_.fill({com.velocity[0], com.velocity[1]});
+  goal_.fill({com.position[0], com.position[1]});
+  for (std::size_t i = 0; i < planners.size(); ++i) {
+    if (planners[i] < 0) continue;
+    filtered_velocity_[static_cast<std::size_t>(planners[i])] = old.filtered_velocity_[i];
+    goal_[static_cast<std::size_t>(planners[i])] = old.goal_[i];
+  }
+  contact_side_ = old.contact_side_;
+  primed_ = old.primed_;
+  dropped_ = old.dropped_;
+  head_ = count_ = 0;
+}
+
 // v̂' = (g/h)(x - p) + (v - v̂)/τ: the pendulum predicts, the measured velocity corrects slowly, so
 // noise is averaged over τ without the lag of a plain low-pass.
 void PlannerLink::observe(std::span<const int> stance_contacts, std::span<const double> parameters,

@@ -19,6 +19,10 @@ class PlannerLink {
 
   // At the start pose, the model being updated: which side each contact belongs to.
   void start() noexcept;
+  // Goes on with what the planners of another behavior observed; answers under way are lost. A
+  // planner that was not there starts from the model of the last tick, `now`.
+  void take_over(const PlannerLink& old, const std::vector<int>& planners,
+                 const model::ControlModel& now) noexcept;
   // Updates what planners observe every tick (the CoM velocity filter, the goal
   // that is approached). period in s.
   void observe(std::span<const int> stance_contacts, std::span<const double> parameters,

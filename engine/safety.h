@@ -60,6 +60,14 @@ class SafetyFilter {
   // bound, to the last bit: it follows what was asked for at that rate.
   SafetyFindings filter(hal::Commands& commands, bool limit_steps = false) noexcept;
 
+  // Goes on from the commands that another filter of the same robot let pass.
+  void take_over(const SafetyFilter& old) noexcept {
+    previous_ = old.previous_;
+    have_previous_ = old.have_previous_;
+    torque_step_ = old.torque_step_;
+    held_back_ = old.held_back_;
+  }
+
   double torque_step() const noexcept { return torque_step_; }  // N m, largest of the last tick
   // Whether the last filter() held a command back for its step.
   bool held_back() const noexcept { return held_back_; }

@@ -118,6 +118,13 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+std::string setup_text(const std::string& text, const LogContinuation& continues) {
+  auto json = nlohmann::ordered_json::parse(text);
+  json["continues"] = {
+      {"number", continues.number}, {"back", continues.back}, {"proven", continues.proven}};
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 RunSetup read_setup(const std::string& text) {
   RunSetup setup;
   try {
@@ -133,6 +140,10 @@ RunSetup read_setup(const std::string& text) {
     json.at("com_shift").get_to(s.deviation.com_shift);
     for (const auto& ramp : json.at("surface")) {
       s.surface.ramps.push_back({ramp.at(0), ramp.at(1), ramp.at(2)});
+    }
+    if (json.contains("continues")) {
+      const auto& from = json.at("continues");
+      setup.continues = {from.at("number"), from.at("back"), from.at("proven")};
     }
     s.script_access = {json.at("script_access").at("files"),
                        json.at("script_access").at("processes")};

@@ -21,11 +21,22 @@ std::vector<engine::LogFile> source_files(const behaviors::Behavior& behavior,
 // JSON: paths, --set texts, settings of the loop.
 std::string setup_text(const behaviors::Behavior& behavior, const LogSource& source);
 
+// Of the log of a reload: how it goes on from the one before.
+struct LogContinuation {
+  int number = 0;           // of the reload; 0: the log begins with its run
+  bool back = false;        // the behavior from before the last one goes on
+  std::int64_t proven = 0;  // tick at which faults have their reactions again
+};
+
+// The same of a log that goes on from another.
+std::string setup_text(const std::string& text, const LogContinuation& continues);
+
 // What setup_text() told.
 struct RunSetup {
   std::string behavior_file, robot_file;  // absolute
   std::vector<std::pair<std::string, std::string>> set;
   engine::LoopSettings settings;
+  LogContinuation continues;
 };
 // Throws std::runtime_error with one sentence if the text is not of that kind.
 RunSetup read_setup(const std::string& text);

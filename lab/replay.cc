@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "behaviors/loader.h"
+#include "behaviors/take_over.h"
 #include "engine/control_loop.h"
 #include "engine/tick_inputs.h"
 #include "lab/log_folder.h"
@@ -19,26 +22,30 @@ namespace {
 // Gives what was read in the run; commands go nowhere.
 class LoggedHardware final : public hal::Hardware {
  public:
-  explicit LoggedHardware(const LoggedInputs& inputs)
-      : inputs_(inputs), layout_(inputs.joints, inputs.contacts) {
-    if (layout_.columns() != static_cast<int>(inputs.columns.size())) {
+  explicit LoggedHardware(const LoggedInputs& inputs) { play(inputs, inputs.first_tick); }
+  // These from here on, `next` first.
+  void play(const LoggedInputs& inputs, std::int64_t next) {
+    inputs_ = &inputs;
+    layout_.emplace(inputs.joints, inputs.contacts);
+    if (layout_->columns() != static_cast<int>(inputs.columns.size())) {
       throw std::runtime_error("the log's inputs are not of this program's kind");
     }
+    next_ = next;
   }
   std::string name() const override { return "replay"; }
   void start() override { next_ = -1; }
   bool read(hal::Sensors& sensors) noexcept override {
-    const std::int64_t last = inputs_.first_tick + inputs_.ticks() - 1;
-    const std::int64_t tick = std::clamp(next_++, inputs_.first_tick, last);
+    const std::int64_t last = inputs_->first_tick + inputs_->ticks() - 1;
+    const std::int64_t tick = std::clamp(next_++, inputs_->first_tick, last);
     hal::Commands ignored;
-    return layout_.unpack(inputs_.row(tick), sensors, ignored);
+    return layout_->unpack(inputs_->row(tick), sensors, ignored);
   }
   void write(const hal::Commands&) noexcept override {}
   void safe_stop() noexcept override {}
 
  private:
-  const LoggedInputs& inputs_;
-  engine::InputLayout layout_;
+  const LoggedInputs* inputs_ = nullptr;
+  std::optional<engine::InputLayout> layout_;
   std::int64_t next_ = -1;  // -1: what start() reads
 };
 
@@ -83,46 +90,58 @@ bool same(const behaviors::PlanAnswer& a, const behaviors::PlanAnswer& b) {
          std::memcmp(&a.extension, &b.extension, sizeof a.extension) == 0;
 }
 
-}  // namespace
-
-struct Replay::Impl {
-  Impl(const Log& l, const std::string& behavior_file)
-      : log(l), folder(l), setup(read_setup(l.setup)), hardware(l.inputs) {
-    if (log.inputs.ticks() == 0) {
-      throw std::runtime_error("the log '" + log.path + "' has no inputs to replay");
+// One behavior of the run on one log, or on a later one when it was brought back.
+struct ReplayStage {
+  ReplayStage(const Log& l, const std::string& behavior_file)
+      : log(&l), folder(l), setup(read_setup(l.setup)), hardware(l.inputs) {
+    if (log->inputs.ticks() == 0) {
+      throw std::runtime_error("the log '" + log->path + "' has no inputs to replay");
     }
     behavior = load(setup, behavior_file, folder);
-    slots = slot_map(log, *behavior);
-    for (const std::string& name : log.event_names) events.push_back(behavior->find_event(name));
+    name_inputs();
     loop = std::make_unique<engine::ControlLoop>(*behavior, hardware, replay_settings(setup));
     loop->play(trace);
-    loop->start();
+  }
+
+  void name_inputs() {
+    slots = slot_map(*log, *behavior);
+    events.clear();
+    for (const std::string& name : log->event_names) events.push_back(behavior->find_event(name));
+    plan = edit = 0;
+  }
+
+  // The same behavior again, later in the run; what its first tick reads was read.
+  void play(const Log& later, const RunSetup& its_setup) {
+    log = &later;
+    setup.continues = its_setup.continues;
+    hardware.play(later.inputs, later.inputs.first_tick + 1);
+    name_inputs();
   }
 
   void fill_trace() {
     const std::int64_t tick = loop->ticks();
     trace.clear();
-    for (; plan < log.plans.size() && log.plans[plan].tick <= tick; ++plan) {
-      const LoggedPlan& p = log.plans[plan];
+    for (; plan < log->plans.size() && log->plans[plan].tick <= tick; ++plan) {
+      const LoggedPlan& p = log->plans[plan];
       if (p.planner < 0 || p.planner >= static_cast<int>(behavior->planners.size())) continue;
       trace.plans.push_back(
           {p.planner, p.sequence, p.ok, p.target, p.predicted_pos, p.predicted_vel, p.extension});
     }
-    for (; edit < log.edits.size() && log.edits[edit].tick <= tick; ++edit) {
-      for (const auto& [slot, value] : log.edits[edit].writes) {
+    for (; edit < log->edits.size() && log->edits[edit].tick <= tick; ++edit) {
+      for (const auto& [slot, value] : log->edits[edit].writes) {
         if (slot < 0 || slot >= static_cast<int>(slots.size())) continue;
         const int here = slots[static_cast<std::size_t>(slot)];
         if (here >= 0) trace.writes.push_back({here, value});
       }
-      for (const int event : log.edits[edit].events) {
+      for (const int event : log->edits[edit].events) {
         if (event < 0 || event >= static_cast<int>(events.size())) continue;
         trace.events.push_back(events[static_cast<std::size_t>(event)]);
       }
-      trace.limit_steps |= log.edits[edit].limit_steps;
+      trace.limit_steps |= log->edits[edit].limit_steps;
     }
   }
 
-  const Log& log;
+  const Log* log;
   LogFolder folder;
   RunSetup setup;
   LoggedHardware hardware;
@@ -133,39 +152,91 @@ struct Replay::Impl {
   std::size_t plan = 0, edit = 0;  // the next of the log's
 };
 
-Replay::Replay(const Log& log, const std::string& behavior_file)
-    : impl_(std::make_unique<Impl>(log, behavior_file)) {}
+}  // namespace
+
+struct Replay::Impl {
+  std::unique_ptr<ReplayStage> now, before;
+  bool computed = false;  // the last tick is still to be ended
+  bool read = false;      // what the next tick reads is there already
+
+  void end_tick() {
+    if (computed) now->loop->actuate();
+    computed = false;
+  }
+};
+
+Replay::Replay(const Log& log, const std::string& behavior_file) : impl_(std::make_unique<Impl>()) {
+  impl_->now = std::make_unique<ReplayStage>(log, behavior_file);
+  if (impl_->now->setup.continues.number > 0) {
+    throw std::runtime_error(
+        fmt::format("the log '{}' goes on from the one before reload {}, and replays only with it: "
+                    "give the folder "
+                    "of the whole run",
+                    log.path, impl_->now->setup.continues.number));
+  }
+  impl_->now->loop->start();
+}
 Replay::~Replay() = default;
 
-std::int64_t Replay::end() const {
-  return impl_->log.inputs.first_tick + impl_->log.inputs.ticks();
+// As lab::Reloads did it in the run.
+void Replay::go_on(const Log& next_log) {
+  const RunSetup setup = read_setup(next_log.setup);
+  const bool back = setup.continues.back && impl_->before != nullptr;
+  const std::int64_t due = back ? end() - 1 : end();
+  if (next() != end() || next_log.inputs.first_tick != due) {
+    throw std::runtime_error(
+        fmt::format("the log '{}' does not begin where the one before ends", next_log.path));
+  }
+  if (back) {  // its tick is done again by the behavior from before
+    impl_->computed = false;
+    impl_->read = true;
+    impl_->before->play(next_log, setup);
+  } else {
+    impl_->end_tick();
+    impl_->before = std::make_unique<ReplayStage>(next_log, "");
+  }
+  std::swap(impl_->now, impl_->before);
+  const ReplayStage& old = *impl_->before;
+  impl_->now->loop->take_over(*old.loop,
+                              behaviors::map_take_over(*old.behavior, *impl_->now->behavior),
+                              back ? engine::ValueChange::at_once : engine::ValueChange::ramped);
+  impl_->now->loop->set_probation(!back);
+  if (back) impl_->before.reset();
 }
-std::int64_t Replay::next() const { return impl_->loop->ticks(); }
-const behaviors::Behavior& Replay::behavior() const { return *impl_->behavior; }
-const engine::ControlLoop& Replay::loop() const { return *impl_->loop; }
+
+std::int64_t Replay::end() const {
+  return impl_->now->log->inputs.first_tick + impl_->now->log->inputs.ticks();
+}
+std::int64_t Replay::next() const { return impl_->now->loop->ticks() + (impl_->computed ? 1 : 0); }
+const behaviors::Behavior& Replay::behavior() const { return *impl_->now->behavior; }
+const engine::ControlLoop& Replay::loop() const { return *impl_->now->loop; }
 
 void Replay::tick(const std::function<void()>& after, const std::function<void()>& before_machine) {
-  impl_->fill_trace();
-  impl_->trace.inspect = before_machine;
-  impl_->loop->sense();
-  impl_->loop->compute();
+  impl_->end_tick();
+  ReplayStage& now = *impl_->now;
+  const LogContinuation& continues = now.setup.continues;
+  if (continues.number > 0 && now.loop->ticks() == continues.proven) now.loop->set_probation(false);
+  now.fill_trace();
+  now.trace.inspect = before_machine;
+  if (!std::exchange(impl_->read, false)) now.loop->sense();
+  now.loop->compute();
   if (after) after();
-  impl_->loop->actuate();
+  impl_->computed = true;
 }
 
 std::string Replay::state() const {
   std::string names;
-  for (const int state : impl_->loop->machine().active_atomic()) {
+  for (const int state : impl_->now->loop->machine().active_atomic()) {
     if (!names.empty()) names += " ";
-    names += impl_->behavior->states[static_cast<std::size_t>(state)].path;
+    names += impl_->now->behavior->states[static_cast<std::size_t>(state)].path;
   }
   return names.empty() ? "-" : names;
 }
 
 std::vector<std::string> Replay::plan_differences() const {
   std::vector<std::string> lines;
-  const auto& logged = impl_->trace.plans;
-  const auto& now = impl_->trace.planned;
+  const auto& logged = impl_->now->trace.plans;
+  const auto& now = impl_->now->trace.planned;
   for (const behaviors::PlanAnswer& then : logged) {
     // Planners that were made to fail in the run answer nothing, or another time.
     const auto found = std::ranges::find_if(now, [&](const behaviors::PlanAnswer& answer) {
@@ -177,7 +248,8 @@ std::vector<std::string> Replay::plan_differences() const {
     };
     const auto planner = static_cast<std::size_t>(then.planner);
     lines.push_back(fmt::format("planner.{}: {} in the log, {} now",
-                                impl_->behavior->planners[planner].name, text(then), text(*found)));
+                                impl_->now->behavior->planners[planner].name, text(then),
+                                text(*found)));
   }
   return lines;
 }

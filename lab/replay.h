@@ -27,10 +27,13 @@ class Replay {
   // their messages).
   explicit Replay(const Log& log, const std::string& behavior_file = "");
   ~Replay();
+  // The run goes on in the log of its next reload, which must outlive the replay, too. Throws
+  // std::runtime_error: it does not begin where this one ends, or as the constructor.
+  void go_on(const Log& next);
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
 
-  // Ticks that there are inputs for; the next one to run.
+  // Ticks that there are inputs for in the log it is in; the next one to run.
   std::int64_t end() const;
   std::int64_t next() const;
   // The next tick. after: called when control is computed and before anything moves on;

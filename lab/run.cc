@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/pacer.h"
+#include "lab/reload.h"
 #include "lab/run_log.h"
 
 namespace footfall::lab {
@@ -27,25 +30,28 @@ std::int64_t ns_since(Clock::time_point start) {
 class Run {
  public:
   Run(engine::ControlLoop& loop, RunSpec& spec)
-      : loop_(loop), spec_(spec), metrics_(loop), log_(loop, spec.log, spec.said) {
+      : loop_(&loop),
+        spec_(spec),
+        metrics_(loop),
+        log_(std::make_unique<RunLog>(loop, spec.log, spec.said)) {
     states_before_.reserve(loop.behavior().states.size());
   }
 
   RunResult execute() {
-    loop_.start();
-    log_.after_start();
-    for (const engine::EditBatch& edit : goal_edits(loop_.behavior(), spec_)) {
-      const engine::EditReply reply = loop_.edits().submit(edit);
+    loop_->start();
+    log_->after_start();
+    for (const engine::EditBatch& edit : goal_edits(loop_->behavior(), spec_)) {
+      const engine::EditReply reply = loop_->edits().submit(edit);
       if (!reply.accepted()) throw std::runtime_error("--goal: error: " + reply.reasons.front());
     }
     if (spec_.link) spec_.link->start();
-    engine::Pacer pacer(loop_.period());
+    engine::Pacer pacer(loop_->period());
     started_ = Clock::now();
     while (!ended()) {
       if (spec_.realtime && !pacer.wait()) result_.faults.add(core::Fault::tick_overrun);
       one_tick();
     }
-    loop_.safe_stop();
+    loop_->safe_stop();
     if (spec_.link) spec_.link->stop();
     finish();
     return std::move(result_);
@@ -54,40 +60,89 @@ class Run {
  private:
   // Where the robot is told to be; the origin if its behavior has no goal.
   std::array<double, 2> current_goal() const {
-    if (!has_goal(loop_.behavior())) return {};
-    const auto slot = static_cast<std::size_t>(loop_.behavior().planners.front().goal_slot);
-    return {loop_.machine().parameters()[slot], loop_.machine().parameters()[slot + 1]};
+    if (!has_goal(loop_->behavior())) return {};
+    const auto slot = static_cast<std::size_t>(loop_->behavior().planners.front().goal_slot);
+    return {loop_->machine().parameters()[slot], loop_->machine().parameters()[slot + 1]};
   }
 
   void one_tick() {
     take_answers();
     fire_events();
+    if (spec_.reloads) reload();
     if (spec_.observer) {
       spec_.observer->before_tick(
-          {metrics_.counter().steps(), last_step_at_, metrics_.last_step_duration()}, log_);
+          {metrics_.counter().steps(), last_step_at_, metrics_.last_step_duration()}, *log_);
     }
-    loop_.sense();
+    loop_->sense();
     // A fault's tick enters `safe`: what ended the run is told by the states before it.
-    const auto active = loop_.machine().active_atomic();
+    const auto active = loop_->machine().active_atomic();
     states_before_.assign(active.begin(), active.end());
+    compute();
+    if (spec_.reloads && spec_.reloads->take_back()) {
+      log_->after_tick({});  // what the faulty tick was; the hardware never sees it
+      go_on();
+      compute();
+    }
+    const StepEvent step = metrics_.observe(current_goal());
+    if (step.foot >= 0) last_step_at_ = loop_->time();
+    log_->after_tick(step);
+    if (spec_.observer) spec_.observer->after_tick();
+    loop_->actuate();
+    if (spec_.status && loop_->ticks() % 256 == 0) show_status();
+  }
+
+  void compute() {
     const Clock::time_point before = Clock::now();
     if (spec_.arm_allocations) spec_.arm_allocations(true);
-    loop_.compute();
-    if (spec_.link) spec_.link->post(loop_, ns_since(before));
+    loop_->compute();
+    if (spec_.link && binding_ == nullptr) spec_.link->post(*loop_, ns_since(before));
     if (spec_.arm_allocations) spec_.arm_allocations(false);
     result_.tick_time.add(ns_since(before));
-    const StepEvent step = metrics_.observe(current_goal());
-    if (step.foot >= 0) last_step_at_ = loop_.time();
-    log_.after_tick(step);
-    if (spec_.observer) spec_.observer->after_tick();
-    loop_.actuate();
-    if (spec_.status && loop_.ticks() % 256 == 0) show_status();
+  }
+
+  void reload() {
+    for (ScheduledReload& next : spec_.reload_at) {
+      if (next.path.empty() || loop_->time() + 0.5 * loop_->period() < next.at_time) continue;
+      spec_.reloads->request(std::exchange(next.path, ""));
+    }
+    if (spec_.link) bind_link();
+    const bool linked = spec_.link == nullptr || (binding_ == nullptr && spec_.link->rebound());
+    if (linked && spec_.reloads->swap()) {
+      go_on();
+    } else {
+      tell_news();
+    }
+  }
+
+  // With another loop, from where the one before is.
+  void go_on() {
+    tell_news();
+    loop_ = &spec_.reloads->now();
+    metrics_.go_on(*loop_);
+    log_ = std::make_unique<RunLog>(*loop_, spec_.reloads->log(), spec_.said);
+    states_before_.reserve(loop_->behavior().states.size());
+    log_->event("reload", "begins", loop_->behavior().name);
+    if (spec_.link) binding_ = spec_.link->prepare(*loop_);
+    if (spec_.link) bind_link();
+    if (spec_.on_reload) spec_.on_reload(*loop_);
+    ++result_.reloads;
+  }
+
+  // The link takes one loop after the other.
+  void bind_link() {
+    if (binding_ != nullptr && spec_.link->rebound()) spec_.link->rebind(std::move(binding_));
+  }
+
+  void tell_news() {
+    for (const auto& [what, detail] : spec_.reloads->take_news()) {
+      log_->event("reload", what, detail);
+    }
   }
 
   // Nobody waits for them here; what was applied is in the log.
   void take_answers() {
     engine::EditAnswer answer;
-    while (loop_.edits().take_answer(answer)) {
+    while (loop_->edits().take_answer(answer)) {
     }
   }
 
@@ -96,13 +151,13 @@ class Run {
       if (!event.fire || !due(event)) continue;
       event.fire();
       event.fire = nullptr;
-      log_.event("push", event.label, "");
+      log_->event("push", event.label, "");
     }
   }
 
   bool due(const ScheduledEvent& event) const {
     // Half a period: times are whole numbers of periods up to round-off.
-    const double now = loop_.time() + 0.5 * loop_.period();
+    const double now = loop_->time() + 0.5 * loop_->period();
     if (event.at_time) return now >= *event.at_time;
     if (metrics_.counter().steps() < event.at_step) return false;
     return now >= last_step_at_ + event.phase * metrics_.last_step_duration();
@@ -110,7 +165,7 @@ class Run {
 
   bool ended() {
     if (spec_.stop && spec_.stop->load()) return end_with(RunEnd::stopped);
-    switch (loop_.state()) {
+    switch (loop_->state()) {
       case engine::LoopState::running:
         break;
       case engine::LoopState::finished:
@@ -127,7 +182,7 @@ class Run {
     if (spec_.max_steps > 0 && metrics_.counter().steps() >= spec_.max_steps) {
       return end_with(RunEnd::steps);
     }
-    if (spec_.max_time > 0.0 && loop_.time() + 0.5 * loop_.period() >= spec_.max_time) {
+    if (spec_.max_time > 0.0 && loop_->time() + 0.5 * loop_->period() >= spec_.max_time) {
       return end_with(RunEnd::time);
     }
     return false;
@@ -142,30 +197,31 @@ class Run {
     const double wall = seconds_since(started_);
     if (wall - last_status_ < 0.2) return;
     last_status_ = wall;
-    spec_.status(
-        {loop_.time(), metrics_.counter().steps(), log_.state_name(), loop_.time() / wall});
+    spec_.status({loop_->time(), metrics_.counter().steps(), log_->state_name(),
+                  loop_->time() / wall, spec_.reloads ? spec_.reloads->note() : ""});
   }
 
   void finish() {
     result_.wall_time = seconds_since(started_);
-    result_.real_time_factor = result_.wall_time > 0.0 ? loop_.time() / result_.wall_time : 0.0;
+    result_.real_time_factor = result_.wall_time > 0.0 ? loop_->time() / result_.wall_time : 0.0;
     result_.figures = metrics_.figures(result_.end == RunEnd::fall);
     if (result_.end == RunEnd::fall || result_.end == RunEnd::fault) {
-      result_.cause = explain_end(loop_, metrics_.counter(), states_before_);
+      result_.cause = explain_end(*loop_, metrics_.counter(), states_before_);
     }
-    result_.worst = worst_faults(loop_);
+    result_.worst = worst_faults(*loop_);
     for (std::size_t i = 0; i < result_.faults.count.size(); ++i) {
-      result_.faults.count[i] += loop_.faults().count[i];
-      result_.faults.count[i] += loop_.machine().faults().count[i];
+      result_.faults.count[i] += loop_->faults().count[i];
+      result_.faults.count[i] += loop_->machine().faults().count[i];
     }
     if (spec_.allocations) result_.allocations = spec_.allocations();
-    log_.event("end", run_end_name(result_.end), result_.cause ? result_.cause->text : "");
+    log_->event("end", run_end_name(result_.end), result_.cause ? result_.cause->text : "");
   }
 
-  engine::ControlLoop& loop_;
+  engine::ControlLoop* loop_;  // that runs now
   RunSpec& spec_;
   RunMetrics metrics_;
-  RunLog log_;
+  std::unique_ptr<RunLog> log_;
+  std::shared_ptr<engine::LinkBinding> binding_;  // that the link is to take when it can
   RunResult result_;
   Clock::time_point started_;
   std::vector<int> states_before_;  // active atomic states at the start of the tick

@@ -33,8 +33,16 @@ struct RunStatus {
   std::int64_t steps = 0;
   std::string state;  // path of the first active atomic state
   double real_time_factor = 0.0;
+  std::string note;  // what is to be known besides; mostly empty
 };
 
+// A file that is to take over from a time on.
+struct ScheduledReload {
+  double at_time = 0.0;  // s
+  std::string path;
+};
+
+class Reloads;
 class RunLog;
 
 // Where a run is in its steps.
@@ -61,6 +69,10 @@ struct RunSpec {
   std::optional<std::array<double, 2>> goal_velocity;  // m/s, world; the goal moves from the start
   std::vector<ScheduledEvent> events;
   RunObserver* observer = nullptr;
+  Reloads* reloads = nullptr;              // null: the behavior stays what it is
+  std::vector<ScheduledReload> reload_at;  // loaded and checked then, the run waiting
+  // Another loop goes on from here; the one before is still there. Between two ticks.
+  std::function<void(engine::ControlLoop& now)> on_reload;
   bool realtime = false;  // paced by the wall clock
   engine::LogWriter* log = nullptr;
   engine::LcmLink* link = nullptr;  // live tuning, not started yet; stopped when the run ends
@@ -83,6 +95,7 @@ struct RunResult {
   std::int64_t allocations = -1;  // within ticks; -1: not counted
   double real_time_factor = 0.0;
   double wall_time = 0.0;
+  int reloads = 0;  // done, those taken back counted twice
 };
 
 // Runs from start to end. Throws what ControlLoop::start() throws, and std::runtime_error if the

@@ -39,6 +39,7 @@ RunLog::RunLog(engine::ControlLoop& loop, engine::LogWriter* log, Said said)
     : loop_(loop),
       log_(log),
       said_(std::move(said)),
+      seen_faults_(loop.faults()),
       last_targets_(loop.behavior().planners.size()) {
   if (log_ != nullptr) loop_.record(trace_);
 }

@@ -27,16 +27,16 @@ double ErrorFigure::rms() const noexcept {
 }
 
 RunMetrics::RunMetrics(const engine::ControlLoop& loop)
-    : loop_(loop),
+    : loop_(&loop),
       counter_(static_cast<int>(loop.behavior().robot.contacts.size()), loop.period()) {
   recent_.resize(kRecent);
 }
 
 StepEvent RunMetrics::observe(const std::array<double, 2>& goal) noexcept {
-  const model::ControlModel& model = loop_.model();
+  const model::ControlModel& model = loop_->model();
   std::array<double, core::kMaxContacts> heights{};
   for (int c = 0; c < model.contact_count(); ++c) heights[at(c)] = model.point(c).position[2];
-  const StepEvent event = counter_.observe(loop_.sensors().contact.data(), heights.data());
+  const StepEvent event = counter_.observe(loop_->sensors().contact.data(), heights.data());
 
   const auto& com = model.com().position;
   if (first_) sums_.start = {com[0], com[1]};
@@ -52,7 +52,7 @@ StepEvent RunMetrics::observe(const std::array<double, 2>& goal) noexcept {
 }
 
 void RunMetrics::observe_errors() noexcept {
-  const tasks::ControlSet& set = loop_.machine().control().primary;
+  const tasks::ControlSet& set = loop_->machine().control().primary;
   for (int t = 0; t < set.task_count; ++t) {
     const tasks::TaskCommand& task = set.tasks[at(t)];
     for (int i = 0; i < task.axis_count; ++i) {
@@ -65,28 +65,29 @@ void RunMetrics::observe_errors() noexcept {
       }
     }
   }
-  if (loop_.time() < kSettledAfter) return;
-  const auto& rpy = loop_.model().rpy();
+  if (loop_->time() < kSettledAfter) return;
+  const auto& rpy = loop_->model().rpy();
   sums_.roll.add(wrap(rpy[0] - orientation_ref_[0]));
   sums_.pitch.add(wrap(rpy[1] - orientation_ref_[1]));
   sums_.yaw.add(wrap(rpy[2] - orientation_ref_[2]));
-  if (have_height_ref_) sums_.height.add(loop_.model().com().position[2] - height_ref_);
-  const core::SignalTable& signals = loop_.signals();
-  const behaviors::SignalLayout& layout = loop_.behavior().layout;
+  if (have_height_ref_) sums_.height.add(loop_->model().com().position[2] - height_ref_);
+  const core::SignalTable& signals = loop_->signals();
+  const behaviors::SignalLayout& layout = loop_->behavior().layout;
   // The tick that ends the run takes the control away or hands it to the safe state; what counts
   // against the behavior is how its own torque moved.
-  if (loop_.state() == engine::LoopState::running) {
+  if (loop_->state() == engine::LoopState::running) {
     sums_.max_torque_step = std::max(sums_.max_torque_step, signals[layout.torque_step]);
   } else {
     sums_.end_torque_step = signals[layout.torque_step];
   }
-  for (int j = 0; j < loop_.model().joint_count(); ++j) {
-    sums_.peak_torque = std::max(sums_.peak_torque, std::abs(loop_.commands().tau[at(j)]));
+  for (int j = 0; j < loop_->model().joint_count(); ++j) {
+    sums_.peak_torque = std::max(sums_.peak_torque, std::abs(loop_->commands().tau[at(j)]));
   }
-  const tasks::ControllerResult& result = loop_.controller().result();
+  const tasks::ControllerResult& result = loop_->controller().result();
   for (int i = 0; i < set.internal_count; ++i) {
     const tasks::InternalCommand& c = set.internals[at(i)];
-    RunFigures::Internal& out = sums_.internal[loop_.behavior().internal_instances[at(c.instance)]];
+    RunFigures::Internal& out =
+        sums_.internal[loop_->behavior().internal_instances[at(c.instance)]];
     out.reference = c.reference;
     out.error.add(result.internal_measured[at(i)] - c.reference);
   }
@@ -94,12 +95,12 @@ void RunMetrics::observe_errors() noexcept {
 
 // Touchdown minus the last planned target of the foot placement planner.
 void RunMetrics::observe_placement() noexcept {
-  const behaviors::SignalLayout& layout = loop_.behavior().layout;
-  if (layout.planner.empty() || loop_.time() < kSettledAfter) return;
-  const core::SignalTable& signals = loop_.signals();
-  for (int f = 0; f < loop_.model().contact_count(); ++f) {
+  const behaviors::SignalLayout& layout = loop_->behavior().layout;
+  if (layout.planner.empty() || loop_->time() < kSettledAfter) return;
+  const core::SignalTable& signals = loop_->signals();
+  for (int f = 0; f < loop_->model().contact_count(); ++f) {
     if (!counter_.touched_down(f)) continue;
-    const auto& p = loop_.model().point(f).position;
+    const auto& p = loop_->model().point(f).position;
     const int target = layout.planner.front().target;
     const double error = std::hypot(p[0] - signals[target], p[1] - signals[target + 1]);
     placement_sum_ += error;
@@ -109,8 +110,8 @@ void RunMetrics::observe_placement() noexcept {
 }
 
 void RunMetrics::observe_step(const StepEvent&, const std::array<double, 2>& goal) noexcept {
-  const auto& com = loop_.model().com().position;
-  const double time = loop_.time();
+  const auto& com = loop_->model().com().position;
+  const double time = loop_->time();
   if (counter_.steps() == 1) first_step_time_ = time;
   if (counter_.steps() > 1) last_step_duration_ = time - last_step_time_;
   last_step_time_ = time;
@@ -121,7 +122,7 @@ void RunMetrics::observe_step(const StepEvent&, const std::array<double, 2>& goa
 RunFigures RunMetrics::figures(bool fell) const {
   RunFigures f = sums_;
   f.steps = counter_.steps();
-  f.time = loop_.time();
+  f.time = loop_->time();
   f.end = last_com_;
   f.fell = fell;
   f.worst_clearance = f.steps > 0 ? counter_.worst_clearance() : 0.0;

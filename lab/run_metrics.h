@@ -55,6 +55,8 @@ class RunMetrics {
  public:
   explicit RunMetrics(const engine::ControlLoop& loop);
 
+  // From now on another loop, which has taken over from the one before.
+  void go_on(const engine::ControlLoop& loop) noexcept { loop_ = &loop; }
   // After each tick's compute(); goal: where it was told to be, m, world. Returns the step counted
   // in this tick.
   StepEvent observe(const std::array<double, 2>& goal) noexcept;
@@ -69,7 +71,7 @@ class RunMetrics {
   void observe_placement() noexcept;
   void observe_step(const StepEvent& event, const std::array<double, 2>& goal) noexcept;
 
-  const engine::ControlLoop& loop_;
+  const engine::ControlLoop* loop_;
   StepCounter counter_;
   RunFigures sums_;
   struct StepSample {

@@ -108,6 +108,9 @@ constexpr KeySpec kLimitsRows[] = {
     key("edit_ramp", quantity(kTime),
         "over which values move at least when a person changes them in a run")
         .otherwise("100 ms"),
+    key("reload_watch", quantity(kTime),
+        "how long after a reload a fault with a reaction brings the former behavior back")
+        .otherwise("2 s"),
 };
 
 }  // namespace

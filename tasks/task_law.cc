@@ -18,6 +18,16 @@ bool TaskMemory::claim(int instance, int axis, std::int64_t tick) noexcept {
   return true;
 }
 
+void TaskMemory::take_over(const TaskMemory& old, const std::vector<int>& instances) noexcept {
+  std::ranges::fill(integral_, 0.0);
+  std::ranges::fill(last_tick_, -1);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (instances[i] < 0) continue;
+    const std::size_t from = i * at(stride_), to = at(instances[i]) * at(stride_);
+    for (std::size_t k = 0; k < at(stride_); ++k) integral_[to + k] = old.integral_[from + k];
+  }
+}
+
 void evaluate_task(const TaskCommand& task, const AxisCommand* axes, const LawContext& context,
                    double* J, double* J_bias, AxisEvaluation* out) noexcept {
   task_rows(task, axes, context, J, J_bias, out);

@@ -42,6 +42,9 @@ class TaskMemory {
   }
   // True once per tick, instance and axis: a task that serves two control laws integrates once.
   bool claim(int instance, int axis, std::int64_t tick) noexcept;
+  // The integrals of another memory of the same robot, whose instance i is `instances[i]` here (-1:
+  // none); the rest are 0.
+  void take_over(const TaskMemory& old, const std::vector<int>& instances) noexcept;
 
  private:
   int stride_;

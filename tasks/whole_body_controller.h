@@ -58,6 +58,13 @@ class WholeBodyController {
   void compute(const ActiveControl& control, std::int64_t tick,
                const double* tau_measured) noexcept;
 
+  // Goes on with the integrals of another controller of the same robot; `instances`: its task
+  // instances as they are numbered here, -1: not here.
+  void take_over(const WholeBodyController& old, const std::vector<int>& instances) noexcept {
+    memory_.take_over(old.memory_, instances);
+    frozen_force_ = old.frozen_force_;
+  }
+
   const ControllerResult& result() const noexcept { return result_; }
   // Torques of the two laws alone at the last tick (transition tests and logs).
   const double* tau_primary() const noexcept { return primary_.solution().tau.data(); }
