@@ -37,6 +37,14 @@ std::string_view cut(std::string_view text) noexcept {
   return text.substr(0, end);
 }
 
+// Asks for memory that the next tick will write: the logger's thread has read it, so it is in
+// another core's cache, and fetching it back would be most of what the log costs a tick.
+void fetch_to_write(const void* begin, std::size_t bytes) noexcept {
+  constexpr std::size_t kLine = 64;
+  const char* at = static_cast<const char*>(begin);
+  for (std::size_t offset = 0; offset < bytes; offset += kLine) __builtin_prefetch(at + offset, 1);
+}
+
 int batch_ticks(std::int64_t rate_mhz) {
   return std::max(1, static_cast<int>(kBatchTime * static_cast<double>(rate_mhz) / 1e3));
 }
@@ -202,8 +210,15 @@ void LogWriter::tick(std::int64_t tick, const hal::Sensors& sensors, bool fresh,
   }
   const auto row = at(batch.ticks++);
   const InputLayout& layout = m.encoder.layout();
-  layout.pack(sensors, fresh, commands, batch.inputs.data() + row * at(layout.columns()));
-  std::memcpy(batch.signals.data() + row * m.signals, signals, m.signals * sizeof(double));
+  const std::size_t columns = at(layout.columns());
+  std::uint64_t* const inputs = batch.inputs.data() + row * columns;
+  double* const copies = batch.signals.data() + row * m.signals;
+  layout.pack(sensors, fresh, commands, inputs);
+  std::memcpy(copies, signals, m.signals * sizeof(double));
+  if (batch.ticks < m.most_ticks) {
+    fetch_to_write(inputs + columns, columns * sizeof *inputs);
+    fetch_to_write(copies + m.signals, m.signals * sizeof *copies);
+  }
   batch.highlight[row] = highlight ? 1 : 0;
   const bool late =
       !m.lockstep && Clock::now() - m.started > std::chrono::duration<double>(kBatchTime);
