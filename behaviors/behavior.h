@@ -52,7 +52,8 @@ struct PlannerInfo {
 struct Behavior : Chart {
   std::string name;  // of the file, without folder and extension
   std::string path;
-  bool has_robot = false;  // false: a pure statechart
+  std::vector<std::string> files;  // all that were read for it: its own, bases, robot
+  bool has_robot = false;          // false: a pure statechart
   model::RobotDescription robot;
 
   core::SignalTable signals;  // prototype: names, units, zeros; a run copies it

@@ -123,6 +123,9 @@ std::unique_ptr<Behavior> load(core::YamlNode root, const std::string& path,
   const bool blamed = behavior == nullptr && !options.set.empty() &&
                       blame_overrides(root, path, options, diagnostics);
   if (!blamed) diagnostics = std::move(trial);
+  for (int k = 0; behavior != nullptr && k < diagnostics.file_count(); ++k) {
+    if (!diagnostics.file(k).starts_with("--")) behavior->files.push_back(diagnostics.file(k));
+  }
   return behavior;
 }
 

@@ -1,6 +1,7 @@
 // Polling of files; see file_watch.h.
 #include "engine/file_watch.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <fstream>
@@ -11,6 +12,10 @@
 namespace footfall::engine {
 
 namespace fs = std::filesystem;
+
+namespace {
+constexpr int kEmptyLooks = 8;
+}  // namespace
 
 FileWatch::FileWatch(const std::vector<std::string>& files, double interval,
                      std::function<std::vector<std::string>()> changed)
@@ -69,6 +74,16 @@ void FileWatch::watch_from_now_on(const std::vector<std::string>& files) {
   known_ = std::move(stamps);
 }
 
+bool FileWatch::settled(const Stamps& now, const Stamps& last) {
+  if (now != last) {
+    empty_looks_ = 0;
+    return false;
+  }
+  const bool empty = std::ranges::any_of(
+      now, [](const auto& entry) { return entry.second.there && entry.second.size == 0; });
+  return !empty || ++empty_looks_ >= kEmptyLooks;
+}
+
 void FileWatch::work() {
   Stamps last = known_;
   std::unique_lock lock(mutex_);
@@ -76,7 +91,7 @@ void FileWatch::work() {
       !wake_.wait_for(lock, std::chrono::duration<double>(interval_), [this] { return stop_; })) {
     lock.unlock();
     Stamps now = look_at_all(last);
-    const bool still = now == last;
+    const bool still = settled(now, last);
     last = std::move(now);
     if (still && !same_content(last, known_)) {
       known_ = last;

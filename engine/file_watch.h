@@ -19,7 +19,8 @@ class FileWatch {
  public:
   // `changed` is called from the watching thread, each time after the content of one of `files` has
   // become another (or there, or gone) and has stayed so from one look to the next, `interval` s
-  // apart; it returns the files to watch from then on. What it throws ends the watch.
+  // apart (an empty file, which an editor may be about to fill, for eight looks); it returns the
+  // files to watch from then on. What it throws ends the watch.
   FileWatch(const std::vector<std::string>& files, double interval,
             std::function<std::vector<std::string>()> changed);
   // Waits for `changed` to return.
@@ -41,6 +42,7 @@ class FileWatch {
   static bool same_content(const Stamps& a, const Stamps& b);
   Stamps look_at_all(const Stamps& last) const;
   void watch_from_now_on(const std::vector<std::string>& files);
+  bool settled(const Stamps& now, const Stamps& last);
   void work();
 
   double interval_;
@@ -48,6 +50,7 @@ class FileWatch {
   Stamps known_;  // as `changed` was told last
   std::mutex mutex_;
   std::condition_variable wake_;
+  int empty_looks_ = 0;  // in a row in which nothing but an empty file was new
   bool stop_ = false;
   std::thread thread_;
 };

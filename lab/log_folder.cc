@@ -17,7 +17,12 @@ LogFolder::LogFolder(const Log& log) {
   }
   path_ = name;
   try {
-    for (const LoggedFile& file : log.files) put(file);
+    for (const LoggedFile& file : log.files) {
+      put(file);
+      const std::size_t at_library = file.path.rfind("/behaviors/library/");
+      if (at_library == std::string::npos) continue;
+      search_.push_back(place_of(file.path.substr(0, at_library)));
+    }
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(path_, ignored);

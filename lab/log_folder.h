@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lab/log_reader.h"
 
@@ -18,11 +19,14 @@ class LogFolder {
 
   // Where a file of the log is here: files that name each other relatively still find each other.
   std::string place_of(const std::string& path) const;
+  // Where bases and robots that were found by name are: for LoadOptions::search.
+  const std::vector<std::string>& search() const { return search_; }
 
  private:
   void put(const LoggedFile& file) const;
 
   std::filesystem::path path_;
+  std::vector<std::string> search_;
 };
 
 }  // namespace footfall::lab

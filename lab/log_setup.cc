@@ -88,6 +88,7 @@ std::vector<engine::LogFile> source_files(const behaviors::Behavior& behavior,
                                           const std::string& world_file) {
   Collector collector;
   collector.add_yaml(behavior.path);
+  for (const std::string& file : behavior.files) collector.add_yaml(file);
   for (const behaviors::ScriptFile& script : behavior.scripts) {
     collector.add_text(script.path, "text/x-lua", script.text);
   }

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +14,8 @@
 
 namespace footfall::lab {
 namespace {
+
+constexpr int kMostAttempts = 10;
 
 // As `footfall check` does.
 std::shared_ptr<const behaviors::Behavior> load_checked(const std::string& path,
@@ -26,6 +30,25 @@ std::shared_ptr<const behaviors::Behavior> load_checked(const std::string& path,
     diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
   }
   return behavior;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// A file that is saved again while it is read is read again: half of it is nobody's mistake.
+std::shared_ptr<const behaviors::Behavior> load_settled(const std::string& path,
+                                                        const behaviors::LoadOptions& options,
+                                                        core::Diagnostics& diagnostics) {
+  for (int attempt = 1;; ++attempt) {
+    core::Diagnostics found;
+    const std::string before = text_of(path);
+    auto behavior = load_checked(path, options, found);
+    if (attempt < kMostAttempts && text_of(path) != before) continue;
+    diagnostics = std::move(found);
+    return behavior;
+  }
 }
 
 // The first file of the robot that is not as it was.
@@ -56,7 +79,7 @@ ReloadCandidate prepare_reload(const std::string& path,
   ReloadCandidate candidate;
   candidate.path = path;
   core::Diagnostics diagnostics;
-  candidate.behavior = load_checked(path, setup.load, diagnostics);
+  candidate.behavior = load_settled(path, setup.load, diagnostics);
   for (int k = 0; k < diagnostics.file_count(); ++k) candidate.files.push_back(diagnostics.file(k));
   if (setup.print && !diagnostics.all().empty()) setup.print(diagnostics);
   if (diagnostics.has_errors() || candidate.behavior == nullptr) {

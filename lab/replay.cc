@@ -53,6 +53,7 @@ std::unique_ptr<behaviors::Behavior> load(const RunSetup& setup, const std::stri
                                           const LogFolder& folder) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
+  options.search = folder.search();
   options.robot = folder.place_of(setup.robot_file);
   options.set = setup.set;
   auto behavior = behaviors::load_behavior(

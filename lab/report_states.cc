@@ -80,6 +80,7 @@ std::string state_graph(const Log& log) {
   const LogFolder folder(log);
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
+  options.search = folder.search();
   options.robot = folder.place_of(setup.robot_file);
   options.set = setup.set;
   auto diagram =

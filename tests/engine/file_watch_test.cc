@@ -65,6 +65,21 @@ TEST_F(Watched, AChangeIsToldOnceItHasSettled) {
   EXPECT_TRUE(told(3));
 }
 
+// Many editors empty a file before they fill it.
+TEST_F(Watched, AnEmptyFileIsGivenTimeToBeFilled) {
+  write("a", "one");
+  engine::FileWatch watch({path("a")}, kInterval, [&] {
+    ++told_;
+    return std::vector<std::string>{path("a")};
+  });
+  write("a", "");
+  std::this_thread::sleep_for(3 * 20ms);
+  EXPECT_EQ(told_, 0);
+  EXPECT_TRUE(told(1));  // it stays empty: that is what was meant
+  write("a", "two");
+  EXPECT_TRUE(told(2));
+}
+
 TEST_F(Watched, WhatTheChangeNamedIsWatchedFromThenOn) {
   write("a", "one");
   write("c", "one");

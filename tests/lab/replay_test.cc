@@ -78,6 +78,16 @@ TEST_F(Workshop, ALogReplaysBitForBitFromItselfAlone) {
 }
 
 // From 100 % to a third in one tick: the torque follows at the robot's bound, and the log says so.
+TEST_F(Workshop, ABaseThatWasFoundByItsNameIsInTheLog) {
+  write("balance.yaml", "base: balance_best\n");
+  const lab::Log log = run("a.mcap");
+  EXPECT_TRUE(std::ranges::any_of(log.files, [](const lab::LoggedFile& file) {
+    return file.path.ends_with("/behaviors/library/balance_best.yaml");
+  }));
+  lab::Replay replay(log);  // it searches nowhere but in the log
+  EXPECT_EQ(lab::verify_replay(log, replay).differs_at, -1);
+}
+
 TEST_F(Workshop, AHardEditReplaysWithTheLimitsThatItHad) {
   Rig rig(path("balance.yaml"), 3);
   lab::RunSpec spec;
