@@ -17,21 +17,13 @@
 #include <memory>
 #include <stdexcept>
 
+#include "core/write_all.h"
+
 namespace footfall::apps {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* what) {
   throw std::runtime_error(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
-}
-
-bool write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t count = ::write(file, text.data(), text.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return true;
 }
 
 std::string read_all(std::FILE* file) {
@@ -63,7 +55,7 @@ void write_whole_file(const std::string& path, std::string_view text) {
   const std::string temporary = fmt::format("{}.{}.part", target, ::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) fail(path, "cannot write");
-  bool good = write_all(file, text);
+  bool good = core::write_all(file, text);
   if (good && there) good = ::fchmod(file, old.st_mode & 07777) == 0;
   if (good) good = ::fsync(file) == 0;
   int reason = errno;
@@ -93,7 +85,7 @@ std::string run_program(const std::string& program, const std::string& argument,
   // Through files: a pipe each way could fill up while nobody reads the other.
   const File in(std::tmpfile(), &std::fclose), out(std::tmpfile(), &std::fclose);
   if (!in || !out) fail(program, "cannot make a temporary file");
-  if (!write_all(::fileno(in.get()), input)) fail(program, "cannot write its input");
+  if (!core::write_all(::fileno(in.get()), input)) fail(program, "cannot write its input");
   ::lseek(::fileno(in.get()), 0, SEEK_SET);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);

@@ -15,6 +15,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/write_all.h"
+
 namespace footfall::core {
 namespace {
 
@@ -54,16 +56,6 @@ std::optional<std::string> read_all(int file) {
     if (count == 0) return text;
     text.append(block, static_cast<std::size_t>(count));
   }
-}
-
-bool write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t count = ::write(file, text.data(), text.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return true;
 }
 
 // A change on its way: the new content lies beside the file, complete.
