@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "behaviors/loader.h"
-#include "core/diagnostics.h"
-#include "core/key_table.h"
+#include "core/diagnostics/diagnostics.h"
+#include "core/yaml/key_table.h"
 
 namespace CLI {
 class App;

@@ -10,8 +10,8 @@
 
 #include "apps/commands.h"
 #include "apps/log_argument.h"
-#include "core/text_check.h"
-#include "core/units.h"
+#include "core/units/units.h"
+#include "core/yaml/text_check.h"
 #include "lab/log_reader.h"
 
 namespace footfall::apps {

@@ -9,8 +9,8 @@
 #include "apps/commands.h"
 #include "apps/log_argument.h"
 #include "apps/output_file.h"
-#include "core/glob.h"
-#include "core/units.h"
+#include "core/units/units.h"
+#include "core/yaml/glob.h"
 
 namespace footfall::apps {
 namespace {

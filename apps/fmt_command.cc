@@ -9,7 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
-#include "core/yaml_format.h"
+#include "core/yaml_text/format.h"
 
 namespace footfall::apps {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/key_table.h"
+#include "core/yaml/key_table.h"
 
 namespace footfall::apps {
 

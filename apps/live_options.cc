@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "apps/commands.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "engine/lcm_link.h"
 
 namespace footfall::apps {

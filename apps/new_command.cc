@@ -8,8 +8,8 @@
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
-#include "core/value_reader.h"
-#include "core/yaml_write.h"
+#include "core/yaml/value_reader.h"
+#include "core/yaml_text/write.h"
 
 namespace footfall::apps {
 namespace {

@@ -17,7 +17,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "core/write_all.h"
+#include "core/text/write_all.h"
 
 namespace footfall::apps {
 namespace {

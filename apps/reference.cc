@@ -12,7 +12,7 @@
 #include "behaviors/language.h"
 #include "behaviors/load_task_types.h"
 #include "core/fault.h"
-#include "core/unit_list.h"
+#include "core/units/unit_list.h"
 
 namespace footfall::apps {
 namespace {

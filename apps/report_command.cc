@@ -14,7 +14,7 @@
 #include "apps/log_argument.h"
 #include "apps/output_file.h"
 #include "apps/report_film.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "lab/log_reader.h"
 #include "lab/log_window.h"
 #include "lab/reload.h"

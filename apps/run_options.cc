@@ -5,7 +5,7 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::apps {
 

@@ -11,8 +11,8 @@
 #include <fstream>
 
 #include "apps/commands.h"
-#include "core/allocation_count.h"
-#include "core/text_check.h"
+#include "core/realtime/allocation_count.h"
+#include "core/yaml/text_check.h"
 #include "hal/stub_backend.h"
 #include "lab/run_log.h"
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/unit_list.h"
+#include "core/units/unit_list.h"
 
 namespace footfall::apps {
 namespace {

@@ -10,9 +10,9 @@
 #include "apps/save_dialog.h"
 #include "behaviors/loader.h"
 #include "behaviors/save_values.h"
-#include "core/units.h"
-#include "core/value_reader.h"
-#include "core/yaml.h"
+#include "core/units/units.h"
+#include "core/yaml/value_reader.h"
+#include "core/yaml/yaml.h"
 
 namespace footfall::apps {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "apps/commands.h"
-#include "core/glob.h"
-#include "core/units.h"
+#include "core/units/units.h"
+#include "core/yaml/glob.h"
 
 namespace footfall::apps {
 namespace {

@@ -14,7 +14,7 @@
 #include "apps/sweep_options.h"
 #include "apps/sweep_setup.h"
 #include "apps/sweep_slurm.h"
-#include "core/yaml_write.h"
+#include "core/yaml_text/write.h"
 #include "lab/process_pool.h"
 #include "lab/suite_files.h"
 #include "lab/sweep_files.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "lab/sweep_loader.h"
 
 namespace footfall::apps {

@@ -12,7 +12,7 @@
 #include "apps/commands.h"
 #include "apps/output_file.h"
 #include "apps/run_setup.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "lab/bless.h"
 #include "lab/process_pool.h"
 #include "lab/suite_files.h"

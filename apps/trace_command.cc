@@ -7,7 +7,7 @@
 
 #include "apps/commands.h"
 #include "behaviors/trace.h"
-#include "core/text_check.h"
+#include "core/yaml/text_check.h"
 
 namespace footfall::apps {
 namespace {

@@ -9,9 +9,9 @@
 #include "apps/tune_options.h"
 #include "apps/tune_session.h"
 #include "apps/tune_text.h"
-#include "core/diagnostics.h"
-#include "core/glob.h"
+#include "core/diagnostics/diagnostics.h"
 #include "core/index.h"
+#include "core/yaml/glob.h"
 
 namespace footfall::apps {
 namespace {

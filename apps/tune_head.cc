@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::apps {
 namespace {

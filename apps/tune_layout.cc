@@ -9,7 +9,7 @@
 
 #include "apps/tune_head.h"
 #include "core/index.h"
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::apps {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/quantity_text.h"
+#include "core/units/quantity_text.h"
 
 namespace footfall::apps {
 namespace {

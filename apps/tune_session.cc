@@ -9,7 +9,7 @@
 #include "apps/commands.h"
 #include "apps/tune_text.h"
 #include "core/index.h"
-#include "core/text_check.h"
+#include "core/yaml/text_check.h"
 
 namespace footfall::apps {
 namespace {

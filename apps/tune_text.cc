@@ -10,10 +10,10 @@
 
 #include "apps/tune_head.h"
 #include "apps/tune_picture.h"
-#include "core/diagnostics.h"
-#include "core/glob.h"
+#include "core/diagnostics/diagnostics.h"
 #include "core/index.h"
-#include "core/text_check.h"
+#include "core/yaml/glob.h"
+#include "core/yaml/text_check.h"
 
 namespace footfall::apps {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/key_table.h"
+#include "core/yaml/key_table.h"
 
 namespace footfall::apps {
 

@@ -9,7 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/log_argument.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "lab/why.h"
 
 namespace footfall::apps {

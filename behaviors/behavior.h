@@ -14,7 +14,7 @@
 #include "behaviors/signals.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "model/robot_description.h"
 #include "tasks/active_set.h"
 

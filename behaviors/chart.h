@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "behaviors/expression.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "behaviors/diagram.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "behaviors/diagram.h"
 #include "behaviors/diagram_text.h"
-#include "core/escape.h"
+#include "core/text/escape.h"
 
 namespace footfall::behaviors {
 namespace {

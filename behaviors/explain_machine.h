@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "behaviors/loader.h"
-#include "core/explain.h"
+#include "core/yaml/explain.h"
 
 namespace footfall::behaviors {
 

@@ -13,7 +13,7 @@
 #include "behaviors/expression_program.h"
 #include "behaviors/parameter.h"
 #include "core/signal_table.h"
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::behaviors {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "behaviors/expression_parser.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 

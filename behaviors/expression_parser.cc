@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "behaviors/expression.h"
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::behaviors {
 

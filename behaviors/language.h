@@ -3,7 +3,7 @@
 // from here. A new key is a line in a table and the code that reads it.
 #pragma once
 
-#include "core/key_table.h"
+#include "core/yaml/key_table.h"
 
 namespace footfall::behaviors {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/glob.h"
+#include "core/yaml/glob.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -18,9 +18,9 @@
 
 #include "behaviors/behavior.h"
 #include "behaviors/loader.h"
-#include "core/diagnostics.h"
-#include "core/value_reader.h"
-#include "core/yaml.h"
+#include "core/diagnostics/diagnostics.h"
+#include "core/yaml/value_reader.h"
+#include "core/yaml/yaml.h"
 
 namespace footfall::behaviors {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "behaviors/language.h"
-#include "core/glob.h"
+#include "core/yaml/glob.h"
 
 namespace footfall::behaviors {
 namespace {

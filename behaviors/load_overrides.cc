@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "behaviors/load_context.h"
-#include "core/dotted_name.h"
+#include "core/text/dotted_name.h"
 
 namespace footfall::behaviors {
 namespace {

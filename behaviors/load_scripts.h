@@ -6,8 +6,8 @@
 
 #include "behaviors/behavior.h"
 #include "behaviors/script.h"
-#include "core/diagnostics.h"
-#include "core/yaml.h"
+#include "core/diagnostics/diagnostics.h"
+#include "core/yaml/yaml.h"
 
 namespace footfall::behaviors {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "behaviors/load_task_types.h"
-#include "core/glob.h"
+#include "core/yaml/glob.h"
 
 namespace footfall::behaviors {
 namespace {

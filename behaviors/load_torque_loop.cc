@@ -6,7 +6,7 @@
 
 #include "behaviors/language.h"
 #include "behaviors/load_context.h"
-#include "core/glob.h"
+#include "core/yaml/glob.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "behaviors/behavior.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::behaviors {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "behaviors/behavior.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 

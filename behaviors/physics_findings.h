@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 

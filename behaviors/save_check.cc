@@ -6,7 +6,7 @@
 
 #include "behaviors/physics_check.h"
 #include "behaviors/save_parts.h"
-#include "core/yaml_edit.h"
+#include "core/yaml_text/edit.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "behaviors/load_context.h"
 #include "behaviors/save_values.h"
-#include "core/yaml.h"
-#include "core/yaml_edit.h"
+#include "core/yaml/yaml.h"
+#include "core/yaml_text/edit.h"
 
 namespace footfall::behaviors {
 

@@ -5,9 +5,9 @@
 
 #include "behaviors/load_gains.h"
 #include "behaviors/save_parts.h"
-#include "core/glob.h"
-#include "core/quantity_text.h"
-#include "core/yaml_write.h"
+#include "core/units/quantity_text.h"
+#include "core/yaml/glob.h"
+#include "core/yaml_text/write.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "behaviors/load_gains.h"
 #include "behaviors/save_parts.h"
-#include "core/yaml_write.h"
+#include "core/yaml_text/write.h"
 
 namespace footfall::behaviors {
 namespace {

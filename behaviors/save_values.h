@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "behaviors/loader.h"
-#include "core/diagnostics.h"
-#include "core/file_change.h"
+#include "core/diagnostics/diagnostics.h"
+#include "core/text/file_change.h"
 
 namespace footfall::behaviors {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/signal_table.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "model/robot_description.h"
 
 namespace footfall::behaviors {

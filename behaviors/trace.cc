@@ -7,7 +7,7 @@
 #include <array>
 
 #include "behaviors/statechart.h"
-#include "core/value_reader.h"
+#include "core/yaml/value_reader.h"
 
 namespace footfall::behaviors {
 namespace {

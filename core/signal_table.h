@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::core {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
+#include "core/units/units.h"
 #include "engine/edit_door.h"
 
 namespace footfall::engine {

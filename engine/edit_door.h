@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "behaviors/machine.h"
-#include "core/ring.h"
+#include "core/realtime/ring.h"
 
 namespace footfall::behaviors {
 struct TakeOverMap;

@@ -6,7 +6,7 @@
 
 #include "core/fault.h"
 #include "core/index.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "engine/live_request.h"
 
 namespace footfall::engine {

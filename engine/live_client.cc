@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/text_check.h"
+#include "core/yaml/text_check.h"
 #include "engine/lcm_bus.h"
 #include "engine/live_codec.h"
 

@@ -13,7 +13,7 @@
 #include <footfall_lcm/values_t.hpp>
 #include <string_view>
 
-#include "core/text_check.h"
+#include "core/yaml/text_check.h"
 
 namespace footfall::engine {
 namespace {

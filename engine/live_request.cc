@@ -7,10 +7,10 @@
 #include <cmath>
 #include <footfall_lcm/request_t.hpp>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "core/index.h"
-#include "core/text_check.h"
-#include "core/units.h"
+#include "core/units/units.h"
+#include "core/yaml/text_check.h"
 
 namespace footfall::engine {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/index.h"
-#include "core/text_check.h"
+#include "core/yaml/text_check.h"
 #include "engine/live_catalogue.h"
 #include "engine/live_clients.h"
 #include "engine/live_history.h"

@@ -9,7 +9,7 @@
 
 #include "core/fault.h"
 #include "core/limits.h"
-#include "core/ring.h"
+#include "core/realtime/ring.h"
 
 namespace footfall_lcm {
 class telemetry_t;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/index.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "engine/log_schema.h"
 #include "engine/proto_bytes.h"
 

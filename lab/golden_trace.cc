@@ -11,7 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::lab {
 namespace {

@@ -14,7 +14,7 @@
 #include <regex>
 #include <stdexcept>
 
-#include "core/yaml.h"
+#include "core/yaml/yaml.h"
 #include "lab/run_log.h"
 
 namespace footfall::lab {

@@ -10,7 +10,7 @@
 
 #include "behaviors/loader.h"
 #include "behaviors/take_over.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "engine/control_loop.h"
 #include "engine/log_writer.h"
 #include "hal/hardware.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/escape.h"
+#include "core/text/escape.h"
 #include "lab/report_data.h"
 
 namespace footfall::lab {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "behaviors/loader.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "lab/log_folder.h"
 #include "lab/log_setup.h"
 #include "lab/report_data.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/timing_histogram.h"
+#include "core/realtime/timing_histogram.h"
 #include "engine/control_loop.h"
 #include "engine/lcm_link.h"
 #include "engine/log_writer.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "behaviors/load_context.h"
-#include "core/value_reader.h"
+#include "core/yaml/value_reader.h"
 #include "lab/scenario_description.h"
 
 namespace footfall::lab {

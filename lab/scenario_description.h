@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "behaviors/behavior.h"
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "core/signal_table.h"
 
 namespace footfall::lab {

@@ -1,7 +1,7 @@
 // `expect` of a scenario: conditions over runs, compiled against the behavior's signals.
 #include <fmt/format.h>
 
-#include "core/units.h"
+#include "core/units/units.h"
 #include "lab/scenario_context.h"
 #include "lab/scenario_keys.h"
 

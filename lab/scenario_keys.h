@@ -2,7 +2,7 @@
 // names from here, the JSON Schema and docs/reference.md are printed from here.
 #pragma once
 
-#include "core/key_table.h"
+#include "core/yaml/key_table.h"
 
 namespace footfall::lab {
 

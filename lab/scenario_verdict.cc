@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "core/units.h"
+#include "core/units/units.h"
 #include "lab/scenario_judge.h"
 
 namespace footfall::lab {

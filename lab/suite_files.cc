@@ -11,9 +11,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/glob.h"
-#include "core/value_reader.h"
-#include "core/yaml.h"
+#include "core/yaml/glob.h"
+#include "core/yaml/value_reader.h"
+#include "core/yaml/yaml.h"
 #include "lab/scenario_loader.h"
 
 namespace footfall::lab {

@@ -5,7 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "core/escape.h"
+#include "core/text/escape.h"
 #include "lab/suite.h"
 
 namespace footfall::lab {

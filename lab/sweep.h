@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::lab {
 

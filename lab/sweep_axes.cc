@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/value_reader.h"
-#include "core/yaml_write.h"
+#include "core/yaml/value_reader.h"
+#include "core/yaml_text/write.h"
 #include "lab/sweep_keys.h"
 #include "lab/sweep_sample.h"
 

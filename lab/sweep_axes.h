@@ -1,7 +1,7 @@
 // The parts of a sweep file that give values: `vary`, `zip`, `sample`. See sweep_loader.h.
 #pragma once
 
-#include "core/yaml.h"
+#include "core/yaml/yaml.h"
 #include "lab/sweep.h"
 
 namespace footfall::lab {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::lab {
 namespace {

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "core/dotted_name.h"
-#include "core/yaml_write.h"
+#include "core/text/dotted_name.h"
+#include "core/yaml_text/write.h"
 #include "lab/yaml_build.h"
 
 namespace footfall::lab {

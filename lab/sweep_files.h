@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/yaml.h"
+#include "core/yaml/yaml.h"
 #include "lab/sweep.h"
 
 namespace footfall::lab {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "core/value_reader.h"
+#include "core/yaml/value_reader.h"
 #include "lab/suite_files.h"
 #include "lab/sweep_axes.h"
 #include "lab/sweep_keys.h"

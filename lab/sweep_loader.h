@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/yaml.h"
+#include "core/yaml/yaml.h"
 #include "lab/sweep.h"
 
 namespace footfall::lab {

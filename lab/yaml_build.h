@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "core/yaml.h"
+#include "core/yaml/yaml.h"
 
 namespace footfall::lab {
 

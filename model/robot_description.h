@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "core/fault.h"
-#include "core/yaml.h"
+#include "core/yaml/yaml.h"
 
 namespace footfall::model {
 

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <utility>
 
-#include "core/glob.h"
 #include "core/limits.h"
-#include "core/value_reader.h"
+#include "core/yaml/glob.h"
+#include "core/yaml/value_reader.h"
 #include "model/robot_description.h"
 #include "model/robot_keys.h"
 

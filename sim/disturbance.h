@@ -8,7 +8,7 @@
 #include <string_view>
 #include <variant>
 
-#include "core/units.h"
+#include "core/units/units.h"
 
 namespace footfall::sim {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/value_reader.h"
+#include "core/yaml/value_reader.h"
 #include "sim/world_keys.h"
 
 namespace footfall::sim {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "model/control_model.h"
 #include "model/height_surface.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/value_reader.h"
+#include "core/yaml/value_reader.h"
 #include "tests/behaviors/behavior_test_support.h"
 
 namespace footfall::tests {

@@ -1,5 +1,5 @@
 // Problems read like a compiler's, in the order of the file, and suggest what was meant.
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 
 #include <gtest/gtest.h>
 

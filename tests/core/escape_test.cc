@@ -1,9 +1,9 @@
 // Text of people is text, in a page and in a terminal.
-#include "core/escape.h"
+#include "core/text/escape.h"
 
 #include <gtest/gtest.h>
 
-#include "core/text_check.h"
+#include "core/yaml/text_check.h"
 
 namespace footfall::core {
 namespace {

@@ -1,5 +1,5 @@
 // Where values come from, and trees written as text.
-#include "core/explain.h"
+#include "core/yaml/explain.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/yaml_format.h"
-#include "core/yaml_write.h"
+#include "core/yaml_text/format.h"
+#include "core/yaml_text/write.h"
 
 namespace footfall::core {
 namespace {

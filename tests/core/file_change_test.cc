@@ -1,4 +1,4 @@
-#include "core/file_change.h"
+#include "core/text/file_change.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // Names by pattern: per-joint maps and lists of names.
-#include "core/glob.h"
+#include "core/yaml/glob.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Key tables: which keys and words they give to a loader.
-#include "core/key_table.h"
+#include "core/yaml/key_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Quantities with units: what is read, what is refused, and that reading is exact.
-#include "core/units.h"
+#include "core/units/units.h"
 
 #include <gtest/gtest.h>
 

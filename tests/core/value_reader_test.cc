@@ -1,6 +1,6 @@
 // Typed values out of YAML: right ones are read, wrong ones are errors at their place that say
 // what was expected.
-#include "core/value_reader.h"
+#include "core/yaml/value_reader.h"
 
 #include <gtest/gtest.h>
 

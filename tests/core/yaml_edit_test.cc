@@ -1,5 +1,3 @@
-#include "core/yaml_edit.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -8,8 +6,9 @@
 #include <numbers>
 #include <random>
 
-#include "core/quantity_text.h"
-#include "core/units.h"
+#include "core/units/quantity_text.h"
+#include "core/units/units.h"
+#include "core/yaml_text/edit.h"
 
 namespace footfall::core {
 namespace {

@@ -1,6 +1,4 @@
 // The canonical layout: what it looks like, and that it changes neither meaning nor itself.
-#include "core/yaml_format.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,7 +6,8 @@
 #include <random>
 #include <sstream>
 
-#include "core/yaml_tokens.h"
+#include "core/yaml_text/format.h"
+#include "core/yaml_text/tokens.h"
 
 namespace footfall::core {
 namespace {

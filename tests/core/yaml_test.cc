@@ -1,5 +1,5 @@
 // The YAML door: exact places, and each of YAML's traps an error instead of a surprise.
-#include "core/yaml.h"
+#include "core/yaml/yaml.h"
 
 #include <gtest/gtest.h>
 

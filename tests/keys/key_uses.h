@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/key_table.h"
-#include "core/yaml.h"
+#include "core/yaml/key_table.h"
+#include "core/yaml/yaml.h"
 
 namespace footfall::tests {
 

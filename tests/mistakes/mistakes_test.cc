@@ -15,7 +15,7 @@
 #include <tuple>
 
 #include "behaviors/loader.h"
-#include "core/diagnostic_ids.h"
+#include "core/diagnostics/ids.h"
 #include "lab/scenario_loader.h"
 #include "model/robot_description.h"
 #include "sim/world_description.h"
@@ -152,7 +152,7 @@ TEST(Mistakes, FiveMistakesInAFileAreReportedInOnePass) {
 TEST(Mistakes, EveryIdInTheSourcesIsRegistered) {
   for (const auto& [id, file] : ids_in_sources(FOOTFALL_SOURCE_DIR)) {
     EXPECT_NE(core::find_diagnostic_id(id), nullptr)
-        << "'" << id << "' in " << file << " is missing in core/diagnostic_ids.cc";
+        << "'" << id << "' in " << file << " is missing in core/diagnostics/ids.cc";
   }
 }
 

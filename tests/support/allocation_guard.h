@@ -2,7 +2,7 @@
 // footfall::allocation_count. Under a sanitizer nothing is counted: `counts()` says so.
 #pragma once
 
-#include "core/allocation_count.h"
+#include "core/realtime/allocation_count.h"
 
 namespace footfall::tests {
 

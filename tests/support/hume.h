@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/diagnostics.h"
+#include "core/diagnostics/diagnostics.h"
 #include "model/control_model.h"
 #include "model/robot_description.h"
 

@@ -1,0 +1,398 @@
+// Typed access to YAML nodes; see value_reader.h.
+#include "core/yaml/value_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace footfall::core {
+
+namespace {
+
+constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
+constexpr std::string_view kDigits = "0123456789";
+
+std::string name_of(Dimension dimension, std::string_view what) {
+  return what.empty() ? dimension_name(dimension) : std::string(what);
+}
+
+// "a, b or c"
+std::string alternatives(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) out += i + 1 == words.size() ? " or " : ", ";
+    out += words[i];
+  }
+  return out;
+}
+
+// The quantity in a plain scalar; text in quotes is text, but people quote numbers with a leading
+// `*`, `%` or `+`, so quotes do not matter here.
+std::optional<Quantity> quantity_of(const YamlNode& node) {
+  return node.is_scalar() ? parse_quantity(node.scalar) : std::nullopt;
+}
+
+bool is_reserved(std::string_view text) {
+  constexpr std::array<std::string_view, 6> kReserved = {"on", "off", "yes", "no", "true", "false"};
+  return std::find(kReserved.begin(), kReserved.end(), text) != kReserved.end();
+}
+
+// The rule that a name breaks, or empty.
+std::string name_problem(std::string_view text) {
+  if (is_reserved(text)) return fmt::format("'{}' cannot be a name", text);
+  if (!is_name(text)) return "letters, digits and '_', no digit first";
+  return {};
+}
+
+}  // namespace
+
+std::string describe(const YamlNode& node) {
+  constexpr std::size_t kShown = 40;
+  switch (node.kind) {
+    case YamlNode::Kind::null:
+      return "nothing";
+    case YamlNode::Kind::sequence:
+      return "a list";
+    case YamlNode::Kind::map:
+      return "a map";
+    case YamlNode::Kind::scalar:
+      break;
+  }
+  if (node.scalar.size() <= kShown) return "'" + node.scalar + "'";
+  std::size_t end = kShown;  // never inside a character
+  while (end > 0 && (static_cast<unsigned char>(node.scalar[end]) & 0xc0u) == 0x80u) --end;
+  return "'" + node.scalar.substr(0, end) + "...'";
+}
+
+void report_expected(const YamlNode& node, std::string_view what, Diagnostics& diagnostics) {
+  diagnostics.error(node.mark, "expected",
+                    fmt::format("expected {}, got {}", what, describe(node)));
+}
+
+bool is_reference(const YamlNode& node) {
+  return node.is_scalar() && node.scalar.size() > 1 && node.scalar.front() == '$' &&
+         node.scalar.find_first_not_of(std::string(kLetters) + std::string(kDigits) + ".", 1) ==
+             std::string::npos;
+}
+
+bool is_expression(const YamlNode& node) {
+  return node.is_scalar() && !node.scalar.empty() && node.scalar.front() == '=';
+}
+
+bool is_off(const YamlNode& node) {
+  return node.is_scalar() && !node.quoted && node.scalar == "off";
+}
+
+bool check_kind(const YamlNode& root, std::string_view kind, int newest, Diagnostics& diagnostics) {
+  if (root.is_null()) return false;
+  if (!root.is_map() || root.entries.empty() || root.entries.front().key != kind) {
+    const std::string got = root.is_map() && !root.entries.empty()
+                                ? fmt::format("'{}'", root.entries.front().key)
+                                : describe(root);
+    diagnostics.error(root.mark, "kind",
+                      fmt::format("not a {} file: expected '{}: {}' as the first key, got {}", kind,
+                                  kind, newest, got));
+    return false;
+  }
+  const YamlNode& version = root.entries.front().value;
+  int number = 0;
+  const char* const end = version.scalar.data() + version.scalar.size();
+  const auto [stop, error] = std::from_chars(version.scalar.data(), end, number);
+  if (version.is_scalar() && error == std::errc() && stop == end && number >= 1 &&
+      number <= newest) {
+    return true;
+  }
+  diagnostics.error(
+      version.mark, "version",
+      fmt::format("this program reads '{}: 1'{}, not version {}", kind,
+                  newest > 1 ? fmt::format(" to '{}: {}'", kind, newest) : "", describe(version)));
+  return false;
+}
+
+bool expect_map(const YamlNode& node, std::string_view what, Diagnostics& diagnostics) {
+  if (node.is_map()) return true;
+  report_expected(node, what, diagnostics);
+  return false;
+}
+
+bool expect_sequence(const YamlNode& node, std::string_view what, Diagnostics& diagnostics) {
+  if (node.is_sequence()) return true;
+  report_expected(node, what, diagnostics);
+  return false;
+}
+
+bool expect_scalar(const YamlNode& node, std::string_view what, Diagnostics& diagnostics) {
+  if (node.is_scalar() && !node.scalar.empty()) return true;
+  report_expected(node, what, diagnostics);
+  return false;
+}
+
+bool check_doc(const YamlNode& node, Diagnostics& diagnostics) {
+  const bool plain = !node.quoted && (node.scalar == "true" || node.scalar == "false" ||
+                                      parse_quantity(node.scalar).has_value());
+  if (node.is_scalar() && !plain) return true;
+  report_expected(node, plain ? "a text (in quotes if it is a number)" : "a text", diagnostics);
+  return false;
+}
+
+void check_keys(const YamlNode& map, const std::vector<std::string>& known,
+                Diagnostics& diagnostics) {
+  for (const YamlEntry& entry : map.entries) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) {
+      if (entry.key == "doc") check_doc(entry.value, diagnostics);
+      continue;
+    }
+    std::string hint = did_you_mean(entry.key, known);
+    if (hint.empty()) hint = fmt::format(", expected {}", alternatives(known));
+    diagnostics.error(entry.key_mark, "unknown-key",
+                      fmt::format("unknown key '{}'{}", entry.key, hint));
+  }
+}
+
+bool has_nearly(const YamlNode& map, std::string_view key) {
+  return std::any_of(map.entries.begin(), map.entries.end(), [key](const YamlEntry& entry) {
+    return entry.key != key && !nearest_name(entry.key, {std::string(key)}).empty();
+  });
+}
+
+const YamlNode* require_key(const YamlNode& map, std::string_view key, Diagnostics& diagnostics) {
+  const YamlNode* const node = map.find(key);
+  if (node == nullptr && !(diagnostics.has_errors() && has_nearly(map, key))) {
+    diagnostics.error(map.mark, "missing-key", fmt::format("the key '{}' is missing", key));
+  }
+  return node;
+}
+
+std::optional<double> read_quantity(const YamlNode& node, Dimension expected,
+                                    Diagnostics& diagnostics, std::string_view what) {
+  const std::optional<Quantity> quantity = quantity_of(node);
+  if (quantity && (quantity->bare || quantity->dimension == expected)) return quantity->value;
+  report_expected(node, name_of(expected, what), diagnostics);
+  return std::nullopt;
+}
+
+bool read_quantity(const YamlNode& map, std::string_view key, Dimension expected, double& out,
+                   Diagnostics& diagnostics, std::string_view what) {
+  const YamlNode* const node = map.find(key);
+  if (node == nullptr) return false;
+  const std::optional<double> value = read_quantity(*node, expected, diagnostics, what);
+  if (value) out = *value;
+  return value.has_value();
+}
+
+std::optional<Quantity> read_any_quantity(const YamlNode& node, Diagnostics& diagnostics) {
+  const std::optional<Quantity> quantity = quantity_of(node);
+  if (!quantity) report_expected(node, "a number with or without a unit", diagnostics);
+  return quantity;
+}
+
+std::optional<double> read_bounded(const YamlNode& node, Dimension expected, double minimum,
+                                   double maximum, Diagnostics& diagnostics,
+                                   std::string_view what) {
+  const std::optional<double> value = read_quantity(node, expected, diagnostics, what);
+  if (!value) return std::nullopt;
+  if (*value >= minimum && *value <= maximum) return value;
+  const std::string unit = expected == kNone ? "" : " " + unit_text(expected);
+  const std::string bounds = std::isinf(maximum)
+                                 ? fmt::format("at least {:.6g}{}", minimum, unit)
+                                 : fmt::format("{:.6g} to {:.6g}{}", minimum, maximum, unit);
+  diagnostics.error(
+      node.mark, "out-of-range",
+      fmt::format("expected {}, {}, got {}", name_of(expected, what), bounds, describe(node)));
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t minimum,
+                                         std::int64_t maximum, Diagnostics& diagnostics) {
+  std::int64_t value = 0;
+  const char* const begin = node.scalar.data();
+  const char* const end = begin + node.scalar.size();
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (node.is_scalar() && error == std::errc() && stop == end && value >= minimum &&
+      value <= maximum) {
+    return value;
+  }
+  report_expected(node, fmt::format("a whole number from {} to {}", minimum, maximum), diagnostics);
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> read_millihertz(const YamlNode& node, Diagnostics& diagnostics) {
+  constexpr double kFastest = 1e6;  // Hz, far above any servo
+  const std::optional<double> hertz =
+      read_bounded(node, kRate, 1e-3, kFastest, diagnostics, "a rate in Hz");
+  if (!hertz) return std::nullopt;
+  const double exact = *hertz * 1e3;
+  const double rounded = std::round(exact);
+  // A decimal with whole millihertz is off by rounding only; 1e-9 is far above that.
+  if (std::abs(exact - rounded) > 1e-9 * rounded) {
+    diagnostics.error(node.mark, "rate",
+                      fmt::format("expected a rate in whole millihertz, got {}", describe(node)));
+    return std::nullopt;
+  }
+  return static_cast<std::int64_t>(rounded);
+}
+
+std::optional<bool> read_bool(const YamlNode& node, Diagnostics& diagnostics) {
+  if (node.is_scalar() && !node.quoted) {
+    if (node.scalar == "true") return true;
+    if (node.scalar == "false") return false;
+  }
+  report_expected(node, "true or false", diagnostics);
+  return std::nullopt;
+}
+
+std::optional<std::string> read_text(const YamlNode& node, Diagnostics& diagnostics,
+                                     std::string_view what) {
+  if (node.is_scalar() && !node.scalar.empty()) return node.scalar;
+  report_expected(node, what, diagnostics);
+  return std::nullopt;
+}
+
+bool is_name(std::string_view text) {
+  return !text.empty() && kLetters.find(text.front()) != std::string_view::npos &&
+         text.find_first_not_of(std::string(kLetters) + std::string(kDigits)) ==
+             std::string_view::npos &&
+         !is_reserved(text);
+}
+
+bool is_dotted_name(std::string_view text) {
+  const std::string parts = std::string(kLetters) + std::string(kDigits) + "-";
+  bool begins = true;  // a part
+  for (const char c : text) {
+    if (c == '.' ? begins : parts.find(c) == std::string::npos) return false;
+    begins = c == '.';
+  }
+  return !begins;
+}
+
+std::optional<std::string> read_name(const YamlNode& node, Diagnostics& diagnostics,
+                                     std::string_view what) {
+  if (node.is_scalar() && is_name(node.scalar)) return node.scalar;
+  if (node.is_scalar() && !node.scalar.empty()) {
+    diagnostics.error(
+        node.mark, "name",
+        fmt::format("expected {} ({}), got {}", what, name_problem(node.scalar), describe(node)));
+  } else {
+    report_expected(node, what, diagnostics);
+  }
+  return std::nullopt;
+}
+
+bool check_name(const YamlEntry& entry, Diagnostics& diagnostics, std::string_view what) {
+  if (is_name(entry.key)) return true;
+  diagnostics.error(
+      entry.key_mark, "name",
+      fmt::format("expected {} ({}), got '{}'", what, name_problem(entry.key), entry.key));
+  return false;
+}
+
+std::optional<int> read_choice(const YamlNode& node, const std::vector<std::string>& choices,
+                               Diagnostics& diagnostics, std::string_view what) {
+  if (node.is_scalar()) {
+    const auto found = std::find(choices.begin(), choices.end(), node.scalar);
+    if (found != choices.end()) return static_cast<int>(found - choices.begin());
+  }
+  const std::string words = alternatives(choices);
+  const std::string hint = node.is_scalar() ? did_you_mean(node.scalar, choices) : std::string();
+  diagnostics.error(
+      node.mark, "expected",
+      fmt::format("expected {}, got {}{}",
+                  what.empty() ? words : fmt::format("{}: {}", what, words), describe(node), hint));
+  return std::nullopt;
+}
+
+std::optional<std::vector<std::string>> read_texts(const YamlNode& node, Diagnostics& diagnostics,
+                                                   std::string_view what) {
+  std::vector<std::string> texts;
+  if (!node.is_sequence()) {
+    const std::optional<std::string> text =
+        read_text(node, diagnostics, fmt::format("{} or a list", what));
+    if (!text) return std::nullopt;
+    texts.push_back(*text);
+    return texts;
+  }
+  bool good = true;
+  for (const YamlNode& item : node.items) {
+    const std::optional<std::string> text = read_text(item, diagnostics, what);
+    good = good && text;
+    if (text) texts.push_back(*text);
+  }
+  return good ? std::optional(texts) : std::nullopt;
+}
+
+std::optional<std::array<double, 2>> read_pair(const YamlNode& node, Dimension expected,
+                                               Diagnostics& diagnostics, std::string_view what) {
+  if (!node.is_sequence() || node.items.size() != 2) {
+    const std::string got =
+        node.is_sequence() ? fmt::format("{} values", node.items.size()) : describe(node);
+    diagnostics.error(
+        node.mark, "expected",
+        fmt::format("expected a pair [{0}, {0}], got {1}", name_of(expected, what), got));
+    return std::nullopt;
+  }
+  const std::optional<double> first = read_quantity(node.items[0], expected, diagnostics, what);
+  const std::optional<double> second = read_quantity(node.items[1], expected, diagnostics, what);
+  if (!first || !second) return std::nullopt;
+  return std::array<double, 2>{*first, *second};
+}
+
+std::optional<std::array<double, 2>> read_range(const YamlNode& node, Dimension expected,
+                                                Diagnostics& diagnostics, std::string_view what) {
+  const auto pair = read_pair(node, expected, diagnostics, what);
+  if (pair && (*pair)[0] > (*pair)[1]) {
+    diagnostics.error(node.mark, "range",
+                      fmt::format("expected [minimum, maximum], got {} before {}",
+                                  describe(node.items[0]), describe(node.items[1])));
+    return std::nullopt;
+  }
+  return pair;
+}
+
+std::optional<std::vector<double>> read_vector(const YamlNode& node, Dimension expected,
+                                               const std::vector<std::string>& axes,
+                                               Diagnostics& diagnostics, double fallback,
+                                               std::string_view what) {
+  std::vector<double> values(axes.size(), fallback);
+  bool good = true;
+  const auto take = [&](std::size_t axis, const YamlNode& value) {
+    const std::optional<double> number = read_quantity(value, expected, diagnostics, what);
+    good = good && number;
+    if (number) values[axis] = *number;
+  };
+  if (node.is_sequence() && node.items.size() == axes.size()) {
+    for (std::size_t i = 0; i < axes.size(); ++i) take(i, node.items[i]);
+  } else if (node.is_sequence()) {
+    diagnostics.error(node.mark, "size",
+                      fmt::format("expected {} values ({}), got {}", axes.size(),
+                                  fmt::join(axes, ", "), node.items.size()));
+    return std::nullopt;
+  } else if (node.is_map()) {
+    const int errors_before = diagnostics.error_count();
+    if (node.entries.empty()) {
+      diagnostics.error(
+          node.mark, "empty-value",
+          fmt::format("expected a value for at least one of {}", fmt::join(axes, ", ")));
+    }
+    check_keys(node, axes, diagnostics);
+    good = diagnostics.error_count() == errors_before;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (const YamlNode* const value = node.find(axes[i])) take(i, *value);
+    }
+  } else {
+    const std::optional<double> number = read_quantity(node, expected, diagnostics, what);
+    if (!number) return std::nullopt;
+    values.assign(axes.size(), *number);
+  }
+  return good ? std::optional(values) : std::nullopt;
+}
+
+std::optional<std::array<double, 3>> read_vector3(const YamlNode& node, Dimension expected,
+                                                  Diagnostics& diagnostics, std::string_view what) {
+  const auto values = read_vector(node, expected, {"x", "y", "z"}, diagnostics, 0.0, what);
+  if (!values) return std::nullopt;
+  return std::array<double, 3>{(*values)[0], (*values)[1], (*values)[2]};
+}
+
+}  // namespace footfall::core

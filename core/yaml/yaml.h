@@ -1,0 +1,73 @@
+// YAML as our own immutable tree with exact positions; the only door to yaml-cpp.
+//
+// Scalars stay text (YAML 1.2 meaning is given by the reader: only `true`/`false` are booleans).
+// Refused here, with a place: duplicate keys, tabs as indentation, `<<`, several documents, invalid
+// UTF-8, nesting deeper than 100, more than 200000 nodes after alias expansion, self-references,
+// files over 4 MB.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics/diagnostics.h"
+
+namespace footfall::core {
+
+struct YamlEntry;
+
+// One node; a map keeps the order of its keys.
+struct YamlNode {
+  enum class Kind { null, scalar, sequence, map };
+  Kind kind = Kind::null;
+  std::string scalar;              // text of a scalar
+  bool quoted = false;             // written with quotes (or as a block scalar)
+  Mark mark;                       // where the node begins
+  std::vector<YamlNode> items;     // of a sequence
+  std::vector<YamlEntry> entries;  // of a map, in file order
+
+  bool is_null() const { return kind == Kind::null; }
+  bool is_scalar() const { return kind == Kind::scalar; }
+  bool is_sequence() const { return kind == Kind::sequence; }
+  bool is_map() const { return kind == Kind::map; }
+  // The value under a key, nullptr if there is none or this is not a map.
+  const YamlNode* find(std::string_view key) const;
+};
+
+struct YamlEntry {
+  std::string key;
+  Mark key_mark;
+  bool key_quoted = false;
+  YamlNode value;
+};
+
+// Reads a file; problems (also "cannot read") go to diagnostics, the result is then null.
+YamlNode load_yaml_file(const std::string& path, Diagnostics& diagnostics);
+// The same from text; `name` stands for the file in messages.
+YamlNode load_yaml_text(std::string_view text, const std::string& name, Diagnostics& diagnostics);
+
+// What a file did to a value of its base.
+struct YamlChange {
+  enum class Kind { replaced, removed, appended };
+  Kind kind = Kind::replaced;
+  std::string path;  // of the value, keys with dots between
+  YamlNode old;      // what the base had, with its place
+  Mark mark;         // of what changed it
+};
+using YamlHistory = std::vector<YamlChange>;  // the innermost base's changes first
+
+// `base: OTHER.yaml` inheritance (relative to the file): maps merge by key in the base's order, new
+// keys last; everything else is replaced whole; `NAME: off` removes; `KEY+:` appends to a list.
+// Cycles and missing bases are errors. Load = load_yaml_file + resolve. What was
+// replaced on the way is added to `history`, if there is one.
+// A base is sought beside the file that names it, then as NAME or NAME.yaml in the folders
+// `library`.
+YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
+                             YamlHistory* history = nullptr,
+                             const std::vector<std::string>& library = {});
+// The same for text; `base:` is relative to the folder of `name`.
+YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
+                                  Diagnostics& diagnostics, YamlHistory* history = nullptr,
+                                  const std::vector<std::string>& library = {});
+
+}  // namespace footfall::core
