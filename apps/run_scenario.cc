@@ -10,7 +10,7 @@
 #include "apps/report_command.h"
 #include "apps/run_setup.h"
 #include "behaviors/physics_check.h"
-#include "hal/sensor_faults.h"
+#include "hal/sensors/faults.h"
 #include "lab/scenario_loader.h"
 #include "lab/scenario_run.h"
 

@@ -13,7 +13,7 @@
 #include "apps/commands.h"
 #include "core/realtime/allocation_count.h"
 #include "core/yaml/text_check.h"
-#include "hal/stub_backend.h"
+#include "hal/backends/stub.h"
 #include "lab/run_log.h"
 
 namespace footfall::apps {

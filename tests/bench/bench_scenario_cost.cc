@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "hal/sensor_faults.h"
+#include "hal/sensors/faults.h"
 #include "lab/run_log.h"
 #include "lab/scenario_loader.h"
 #include "lab/scenario_run.h"

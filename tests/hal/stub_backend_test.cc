@@ -1,10 +1,9 @@
 // The backend without physics: double integrators and scripted contacts.
-#include "hal/stub_backend.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
+#include "hal/backends/stub.h"
 #include "tests/support/allocation_guard.h"
 
 namespace footfall::tests {

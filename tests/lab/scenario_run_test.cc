@@ -10,8 +10,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "hal/sensor_faults.h"
-#include "hal/stub_backend.h"
+#include "hal/backends/stub.h"
+#include "hal/sensors/faults.h"
 #include "lab/scenario_loader.h"
 
 namespace footfall::lab {

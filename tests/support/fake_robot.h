@@ -9,7 +9,7 @@
 
 #include "behaviors/loader.h"
 #include "engine/control_loop.h"
-#include "hal/stub_backend.h"
+#include "hal/backends/stub.h"
 
 namespace footfall::tests {
 

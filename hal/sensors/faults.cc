@@ -1,5 +1,5 @@
-// Sensors that fail on purpose; see sensor_faults.h.
-#include "hal/sensor_faults.h"
+// Sensors that fail on purpose; see faults.h.
+#include "hal/sensors/faults.h"
 
 namespace footfall::hal {
 

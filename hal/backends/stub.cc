@@ -1,5 +1,5 @@
-// Double-integrator joints and scripted contacts; see stub_backend.h.
-#include "hal/stub_backend.h"
+// Double-integrator joints and scripted contacts; see stub.h.
+#include "hal/backends/stub.h"
 
 #include <algorithm>
 #include <cmath>
