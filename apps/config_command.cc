@@ -11,7 +11,7 @@
 #include "core/yaml/explain.h"
 #include "core/yaml_text/write.h"
 #include "lab/scenario_keys.h"
-#include "model/robot_keys.h"
+#include "model/robot/keys.h"
 #include "sim/world_keys.h"
 
 namespace footfall::apps {

@@ -10,7 +10,7 @@
 #include "behaviors/language.h"
 #include "lab/scenario_keys.h"
 #include "lab/sweep_keys.h"
-#include "model/robot_keys.h"
+#include "model/robot/keys.h"
 #include "sim/world_keys.h"
 
 namespace footfall::apps {

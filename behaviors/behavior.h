@@ -15,7 +15,7 @@
 #include "core/fault.h"
 #include "core/signal_table.h"
 #include "core/units/units.h"
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 #include "tasks/active_set.h"
 
 namespace footfall::behaviors {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 #include "model/state.h"
 
 namespace footfall::behaviors {

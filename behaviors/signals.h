@@ -7,7 +7,7 @@
 
 #include "core/signal_table.h"
 #include "core/units/units.h"
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 
 namespace footfall::behaviors {
 

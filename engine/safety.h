@@ -7,7 +7,7 @@
 #include "core/fault.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 
 namespace footfall::engine {
 

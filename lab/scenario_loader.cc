@@ -13,7 +13,7 @@
 #include "lab/scenario_context.h"
 #include "lab/scenario_keys.h"
 #include "model/mjcf.h"
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 
 namespace footfall::lab {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 #include "model/state.h"
 #include "model/tree_factor.h"
 

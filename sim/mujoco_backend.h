@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hal/hardware.h"
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 #include "sim/disturbance.h"
 #include "sim/world_description.h"
 

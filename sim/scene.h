@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 #include "sim/world_description.h"
 
 namespace footfall::sim {

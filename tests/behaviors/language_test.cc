@@ -6,7 +6,7 @@
 #include <set>
 
 #include "behaviors/load_task_types.h"
-#include "model/robot_keys.h"
+#include "model/robot/keys.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 
 namespace footfall::tests {
 namespace {

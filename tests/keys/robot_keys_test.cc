@@ -1,13 +1,12 @@
 // Each key of robot files is one that the loader reads.
-#include "model/robot_keys.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "model/robot_description.h"
+#include "model/robot/description.h"
+#include "model/robot/keys.h"
 #include "tests/keys/key_uses.h"
 
 namespace footfall::tests {

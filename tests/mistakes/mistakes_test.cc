@@ -17,7 +17,7 @@
 #include "behaviors/loader.h"
 #include "core/diagnostics/ids.h"
 #include "lab/scenario_loader.h"
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 #include "sim/world_description.h"
 #include "tests/mistakes/source_ids.h"
 

@@ -1,11 +1,11 @@
 // Robot files: a whole small one, and each mistake an error at its place.
-#include "model/robot_description.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+
+#include "model/robot/description.h"
 
 namespace footfall::model {
 namespace {

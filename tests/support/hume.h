@@ -10,7 +10,7 @@
 
 #include "core/diagnostics/diagnostics.h"
 #include "model/control_model.h"
-#include "model/robot_description.h"
+#include "model/robot/description.h"
 
 namespace footfall::tests {
 

@@ -1,5 +1,5 @@
-// Look-ups in a robot's description, and where robots are found; loading is in robot_loader.cc.
-#include "model/robot_description.h"
+// Look-ups in a robot's description, and where robots are found; loading is in loader.cc.
+#include "model/robot/description.h"
 
 #include <algorithm>
 #include <filesystem>

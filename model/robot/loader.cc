@@ -1,4 +1,4 @@
-// Reads a `robot: 1` file into a RobotDescription and checks it; see robot_description.h.
+// Reads a `robot: 1` file into a RobotDescription and checks it; see description.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include "core/limits.h"
 #include "core/yaml/glob.h"
 #include "core/yaml/value_reader.h"
-#include "model/robot_description.h"
-#include "model/robot_keys.h"
+#include "model/robot/description.h"
+#include "model/robot/keys.h"
 
 namespace footfall::model {
 

@@ -1,5 +1,5 @@
-// Keys and words of a robot file; see robot_keys.h.
-#include "model/robot_keys.h"
+// Keys and words of a robot file; see keys.h.
+#include "model/robot/keys.h"
 
 namespace footfall::model {
 namespace {
