@@ -7,7 +7,7 @@
 
 #include "behaviors/behavior.h"
 #include "model/control_model.h"
-#include "tasks/wbosc.h"
+#include "tasks/solver/wbosc.h"
 #include "tasks/whole_body_controller.h"
 
 namespace footfall::behaviors {

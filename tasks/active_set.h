@@ -1,5 +1,5 @@
 // What the state machine asks of the whole-body controller in this tick: plain numbers only.
-// Written by behaviors/ every tick, read by tasks/wbosc. Capacities are fixed.
+// Written by behaviors/ every tick, read by tasks/solver/wbosc. Capacities are fixed.
 #pragma once
 
 #include <array>

@@ -16,8 +16,8 @@
 
 #include "model/control_model.h"
 #include "tasks/active_set.h"
+#include "tasks/solver/wbosc.h"
 #include "tasks/task_law.h"
-#include "tasks/wbosc.h"
 
 namespace footfall::tasks {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tasks/wbosc.h"
+#include "tasks/solver/wbosc.h"
 #include "tests/support/hume.h"
 
 namespace footfall::tests {

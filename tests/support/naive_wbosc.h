@@ -1,13 +1,13 @@
 // Appendix A of [Kim16] taken literally (with the corrections of docs/notation.md), for comparison:
 // dynamic matrices, A⁻¹ formed, an SVD for every bar-inverse. Slow, plain, and written from the
-// formulas, not from tasks/wbosc.
+// formulas, not from tasks/solver/wbosc.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "model/control_model.h"
-#include "tasks/wbosc.h"
+#include "tasks/solver/wbosc.h"
 
 namespace footfall::tests {
 

@@ -1,5 +1,5 @@
 // The Householder kernels against their definitions and against Eigen.
-#include "tasks/dense_kernels.h"
+#include "tasks/solver/dense_kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "tasks/wbosc.h"
+#include "tasks/solver/wbosc.h"
 #include "tests/support/dense_solve.h"
 #include "tests/support/hume_problem.h"
 #include "tests/support/naive_wbosc.h"

@@ -1,7 +1,7 @@
 // The WBOSC algebra against a dense solve of the equations of motion and against Appendix A.
 // Equations: torques and accelerations against [Kim16] eqs. (28)-(36) and (38)-(44), evaluated
 // literally.
-#include "tasks/wbosc.h"
+#include "tasks/solver/wbosc.h"
 
 #include <gtest/gtest.h>
 

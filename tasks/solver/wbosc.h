@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "model/tree_factor.h"
-#include "tasks/dense_kernels.h"
+#include "tasks/solver/dense_kernels.h"
 
 namespace footfall::tasks {
 

@@ -1,5 +1,5 @@
 // Householder kernels; see dense_kernels.h.
-#include "tasks/dense_kernels.h"
+#include "tasks/solver/dense_kernels.h"
 
 #include <algorithm>
 #include <cmath>

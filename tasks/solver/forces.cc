@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/index.h"
-#include "tasks/wbosc.h"
+#include "tasks/solver/wbosc.h"
 
 namespace footfall::tasks {
 // f = R⁻¹ (a₁ - B₁ τ + h₁): ground on robot; of least norm where contacts are redundant.

@@ -1,5 +1,5 @@
 // Reduced WBOSC; see wbosc.h for the law and the idea.
-#include "tasks/wbosc.h"
+#include "tasks/solver/wbosc.h"
 
 #include <algorithm>
 #include <cmath>
