@@ -10,7 +10,7 @@
 #include "apps/commands.h"
 #include "apps/output_file.h"
 #include "apps/sweep_setup.h"
-#include "behaviors/physics_check.h"
+#include "behaviors/check/physics/check.h"
 #include "lab/scenario_loader.h"
 #include "lab/suite_files.h"
 #include "model/control_model.h"

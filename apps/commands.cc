@@ -9,7 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "behaviors/physics_check.h"
+#include "behaviors/check/physics/check.h"
 
 namespace footfall::apps {
 namespace fs = std::filesystem;

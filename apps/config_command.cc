@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
-#include "behaviors/explain_machine.h"
-#include "behaviors/language.h"
+#include "behaviors/explain/explain_machine.h"
+#include "behaviors/language/language.h"
 #include "core/yaml/explain.h"
 #include "core/yaml_text/write.h"
 #include "lab/scenario_keys.h"

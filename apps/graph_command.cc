@@ -7,7 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
-#include "behaviors/diagram.h"
+#include "behaviors/explain/diagram.h"
 
 namespace footfall::apps {
 namespace {

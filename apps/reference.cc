@@ -9,8 +9,8 @@
 #include "apps/commands.h"
 #include "apps/reference_signals.h"
 #include "apps/value_text.h"
-#include "behaviors/language.h"
-#include "behaviors/load_task_types.h"
+#include "behaviors/language/language.h"
+#include "behaviors/load/control/task_types.h"
 #include "core/fault.h"
 #include "core/units/unit_list.h"
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "behaviors/signals.h"
+#include "behaviors/compiled/signals.h"
 
 namespace footfall::apps {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/commands.h"
 #include "apps/report_command.h"
 #include "apps/run_setup.h"
-#include "behaviors/physics_check.h"
+#include "behaviors/check/physics/check.h"
 #include "hal/sensors/faults.h"
 #include "lab/scenario_loader.h"
 #include "lab/scenario_run.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "behaviors/save_values.h"
+#include "behaviors/save/values.h"
 
 namespace footfall::apps {
 

@@ -7,7 +7,7 @@
 #include "apps/commands.h"
 #include "apps/json_schema.h"
 #include "apps/reference.h"
-#include "behaviors/language.h"
+#include "behaviors/language/language.h"
 #include "lab/scenario_keys.h"
 #include "lab/sweep_keys.h"
 #include "model/robot/keys.h"

@@ -9,7 +9,7 @@
 #include "apps/commands.h"
 #include "apps/save_dialog.h"
 #include "behaviors/loader.h"
-#include "behaviors/save_values.h"
+#include "behaviors/save/values.h"
 #include "core/units/units.h"
 #include "core/yaml/value_reader.h"
 #include "core/yaml/yaml.h"

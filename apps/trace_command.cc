@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "apps/commands.h"
-#include "behaviors/trace.h"
+#include "behaviors/statechart/trace.h"
 #include "core/yaml/text_check.h"
 
 namespace footfall::apps {

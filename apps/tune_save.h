@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/tune_model.h"
-#include "behaviors/save_values.h"
+#include "behaviors/save/values.h"
 
 namespace footfall::apps {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "behaviors/language.h"
-#include "behaviors/load_context.h"
+#include "behaviors/language/language.h"
+#include "behaviors/load/context.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "behaviors/behavior.h"
+#include "behaviors/compiled/behavior.h"
 #include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
 #include "engine/edit_door.h"

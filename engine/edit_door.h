@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 #include "core/realtime/ring.h"
 
 namespace footfall::behaviors {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 
 namespace footfall::engine {
 

@@ -1,7 +1,7 @@
 // The catalogue of what can be changed, and of the names of what is told.
 #pragma once
 
-#include "behaviors/behavior.h"
+#include "behaviors/compiled/behavior.h"
 
 namespace footfall_lcm {
 class catalogue_t;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "behaviors/planner_calls.h"
+#include "behaviors/machine/planner_calls.h"
 
 namespace footfall::engine {
 

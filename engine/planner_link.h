@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 #include "model/control_model.h"
 
 namespace footfall::engine {

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "behaviors/machine.h"
-#include "behaviors/script.h"
+#include "behaviors/machine/machine.h"
+#include "behaviors/script/script.h"
 
 namespace footfall::engine {
 

@@ -1,10 +1,9 @@
 // A control loop in another's place, between two ticks; see ControlLoop::take_over.
-#include "behaviors/take_over.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
 #include "engine/control_loop.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "behaviors/chart.h"
+#include "behaviors/compiled/chart.h"
 
 namespace footfall::lab {
 

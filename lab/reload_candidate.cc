@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "behaviors/physics_check.h"
+#include "behaviors/check/physics/check.h"
 #include "lab/log_setup.h"
 
 namespace footfall::lab {

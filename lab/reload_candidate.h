@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "behaviors/compiled/take_over_map.h"
 #include "behaviors/loader.h"
-#include "behaviors/take_over.h"
 #include "core/diagnostics/diagnostics.h"
 #include "engine/control_loop.h"
 #include "engine/log_writer.h"

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "behaviors/compiled/take_over_map.h"
 #include "behaviors/loader.h"
-#include "behaviors/take_over.h"
 #include "engine/control_loop.h"
 #include "engine/tick_inputs.h"
 #include "lab/log_folder.h"

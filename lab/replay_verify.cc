@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "behaviors/behavior.h"
+#include "behaviors/compiled/behavior.h"
 #include "core/index.h"
 #include "engine/control_loop.h"
 #include "engine/tick_inputs.h"

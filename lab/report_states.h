@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "behaviors/diagram.h"
+#include "behaviors/explain/diagram.h"
 #include "lab/log_reader.h"
 
 namespace footfall::lab {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "behaviors/load_context.h"
+#include "behaviors/load/context.h"
 #include "core/yaml/value_reader.h"
 #include "lab/scenario_description.h"
 

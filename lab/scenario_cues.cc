@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "behaviors/chart.h"
+#include "behaviors/compiled/chart.h"
 #include "core/index.h"
 #include "lab/scenario_keys.h"
 #include "lab/scenario_result.h"

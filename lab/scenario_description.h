@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "behaviors/behavior.h"
+#include "behaviors/compiled/behavior.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/signal_table.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "behaviors/expression.h"
+#include "behaviors/expression/expression.h"
 #include "core/index.h"
 
 namespace footfall::lab {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "behaviors/load_scripts.h"
+#include "behaviors/load/chart/scripts.h"
 #include "lab/scenario_context.h"
 #include "lab/scenario_keys.h"
 #include "model/mjcf.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "behaviors/script.h"
+#include "behaviors/script/script.h"
 #include "engine/control_loop.h"
 #include "lab/scenario_description.h"
 

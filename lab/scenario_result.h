@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 #include "lab/scenario_description.h"
 
 namespace footfall::lab {

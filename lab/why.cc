@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "behaviors/guard_terms.h"
+#include "behaviors/explain/guard_terms.h"
 #include "core/index.h"
 #include "engine/control_loop.h"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "behaviors/loader.h"
-#include "behaviors/machine.h"
-#include "behaviors/trace.h"
+#include "behaviors/machine/machine.h"
+#include "behaviors/statechart/trace.h"
 
 namespace footfall::tests {
 

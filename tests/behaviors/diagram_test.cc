@@ -1,5 +1,5 @@
 // State diagrams: what is in them, and that both writers' texts say it.
-#include "behaviors/diagram.h"
+#include "behaviors/explain/diagram.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

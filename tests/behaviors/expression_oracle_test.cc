@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "behaviors/expression.h"
+#include "behaviors/expression/expression.h"
 
 namespace footfall::tests {
 namespace {

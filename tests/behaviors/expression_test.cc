@@ -1,4 +1,4 @@
-#include "behaviors/expression.h"
+#include "behaviors/expression/expression.h"
 
 #include <gtest/gtest.h>
 

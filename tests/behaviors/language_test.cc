@@ -1,11 +1,11 @@
 // The language as data: complete, and the same as what the loader does.
-#include "behaviors/language.h"
+#include "behaviors/language/language.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "behaviors/load_task_types.h"
+#include "behaviors/load/control/task_types.h"
 #include "model/robot/keys.h"
 
 namespace footfall::behaviors {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 #include "tests/behaviors/behavior_test_support.h"
 #include "tests/support/allocation_guard.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 #include "tests/behaviors/behavior_test_support.h"
 
 namespace footfall::tests {

@@ -1,5 +1,5 @@
 // Control in a state: merged stacks, references that never jump, contact transitions.
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 
 #include <gtest/gtest.h>
 

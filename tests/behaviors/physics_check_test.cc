@@ -8,9 +8,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "behaviors/physics_law.h"
-#include "behaviors/physics_postures.h"
-#include "behaviors/planner_calls.h"
+#include "behaviors/check/physics/law.h"
+#include "behaviors/check/physics/postures.h"
+#include "behaviors/machine/planner_calls.h"
 #include "tests/behaviors/physics_test_support.h"
 
 namespace footfall::tests {

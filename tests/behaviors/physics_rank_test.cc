@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "behaviors/physics_configurations.h"
-#include "behaviors/physics_law.h"
-#include "behaviors/physics_postures.h"
+#include "behaviors/check/physics/configurations.h"
+#include "behaviors/check/physics/law.h"
+#include "behaviors/check/physics/postures.h"
 #include "tests/behaviors/physics_test_support.h"
 
 namespace footfall::tests {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "behaviors/physics_check.h"
+#include "behaviors/check/physics/check.h"
 #include "tests/behaviors/behavior_test_support.h"
 
 namespace footfall::tests {

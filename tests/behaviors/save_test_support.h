@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "behaviors/save_values.h"
+#include "behaviors/save/values.h"
 #include "tests/behaviors/behavior_test_support.h"
 
 namespace footfall::tests {

@@ -1,11 +1,10 @@
 // Values back into their files: what is expected is written out by hand.
-#include "behaviors/save_values.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
+#include "behaviors/save/values.h"
 #include "tests/behaviors/save_test_support.h"
 
 namespace footfall::tests {

@@ -1,5 +1,5 @@
 // Lua scripts: what they see, what they may do, and what stops them.
-#include "behaviors/script.h"
+#include "behaviors/script/script.h"
 
 #include <gtest/gtest.h>
 

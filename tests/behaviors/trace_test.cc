@@ -1,4 +1,4 @@
-#include "behaviors/trace.h"
+#include "behaviors/statechart/trace.h"
 
 #include <gtest/gtest.h>
 

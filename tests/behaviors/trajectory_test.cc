@@ -1,4 +1,4 @@
-#include "behaviors/trajectory.h"
+#include "behaviors/compiled/trajectory.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "behaviors/loader.h"
-#include "behaviors/trace.h"
+#include "behaviors/statechart/trace.h"
 
 namespace {
 

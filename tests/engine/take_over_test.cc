@@ -1,13 +1,12 @@
 // A loop in another's place: what an equal file leaves as it was bit for bit, what of a changed one
 // comes in force and how, what is refused, and that it costs nothing in the tick.
-#include "behaviors/take_over.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 #include <string>
 
+#include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
 #include "engine/control_loop.h"
 #include "tests/support/allocation_guard.h"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "behaviors/loader.h"
-#include "behaviors/machine.h"
-#include "behaviors/trace.h"
+#include "behaviors/machine/machine.h"
+#include "behaviors/statechart/trace.h"
 
 namespace footfall::tests {
 namespace {

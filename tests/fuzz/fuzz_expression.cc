@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "behaviors/expression.h"
+#include "behaviors/expression/expression.h"
 
 namespace footfall::tests {
 namespace {

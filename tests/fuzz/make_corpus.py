@@ -53,7 +53,7 @@ def expressions():
 
 def words():
     found = set(PIECES)
-    for source in read("behaviors/language*.cc") + read("model/*keys.cc") + read("core/units/units.cc"):
+    for source in read("behaviors/language/language*.cc") + read("model/*keys.cc") + read("core/units/units.cc"):
         found.update(s for s in strings(source)[1] if 0 < len(s) <= 24 and " " not in s)
     return sorted(found)
 

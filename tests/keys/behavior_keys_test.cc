@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "behaviors/language.h"
+#include "behaviors/language/language.h"
 #include "tests/behaviors/behavior_test_support.h"
 #include "tests/keys/key_uses.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "behaviors/physics_check.h"
+#include "behaviors/check/physics/check.h"
 #include "lab/log_reader.h"
 #include "lab/replay.h"
 #include "lab/run.h"

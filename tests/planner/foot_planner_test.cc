@@ -1,6 +1,6 @@
 // Foot placement against the pendulum integrated numerically, and the step-to-step map it makes.
 // Equations: [Kim16] eqs. (19), (21) with E1, E2.
-#include "behaviors/foot_planner.h"
+#include "behaviors/planners/foot_planner.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "behaviors/loader.h"
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 
 namespace footfall::tests {
 

@@ -1,7 +1,7 @@
 // A machine without a robot: every task measures zero.
 #pragma once
 
-#include "behaviors/machine.h"
+#include "behaviors/machine/machine.h"
 
 namespace footfall::tests {
 

@@ -1,0 +1,140 @@
+// Internal forces against the friction cone; see parts.h.
+//
+// The robot stands still: every task at its reference, no feedback. The law's contact forces are
+// those of eq. (30) under its torques ([Kim16] Appendix A), with the internal forces of eqs. (39)-
+// (44) in them. On level ground a foot slips if |f_xy| > mu f_z, and pulls if f_z < 0.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "behaviors/check/physics/parts.h"
+
+namespace footfall::behaviors {
+namespace {
+
+using core::Severity;
+
+// The foot that a set of internal forces overloads most.
+struct Overload {
+  int contact = -1;  // index into the robot's contacts
+  double normal = 0.0, tangential = 0.0;
+};
+
+class ForceCheck {
+ public:
+  ForceCheck(PhysicsContext& context, const ControlSpec& control)
+      : context_(context), control_(control), values_(context.behavior) {}
+
+  void run() {
+    const std::vector<double> none(static_cast<std::size_t>(control_.internals.count), 0.0);
+    const std::vector<double> all = references();
+    int judged = 0;
+    for (const model::State& posture : context_.postures) {
+      context_.model.update(posture);
+      if (overload(none)) continue;  // it cannot stand there at all
+      ++judged;
+      for (int k = 0; k < control_.internals.count; ++k) judge(k, all);
+    }
+    context_.findings.settle(judged);
+  }
+
+ private:
+  const InternalSpec& spec(int k) const {
+    return context_.behavior.internals[static_cast<std::size_t>(control_.internals.first + k)];
+  }
+
+  // What does not hang on measurements, in N at each contact; the rest counts as 0.
+  std::vector<double> references() const {
+    std::vector<double> values;
+    for (int k = 0; k < control_.internals.count; ++k) {
+      const Dependence needs = dependence_of(context_.behavior, spec(k).reference);
+      values.push_back(needs.fixed() ? spec(k).scale * values_.of(spec(k).reference).value_or(0.0)
+                                     : 0.0);
+    }
+    return values;
+  }
+
+  std::optional<Overload> overload(const std::vector<double>& internal) {
+    const RestSolution solution = context_.law.rest(control_, internal);
+    std::optional<Overload> worst;
+    double worst_excess = 0.0;
+    for (std::size_t i = 0; i < control_.contacts.size(); ++i) {
+      const auto& contact =
+          context_.behavior.robot.contacts[static_cast<std::size_t>(control_.contacts[i])];
+      const auto& f = solution.forces[i];
+      const double tangential = std::hypot(f[0], f[1]);
+      const double excess = tangential - contact.friction * f[2];
+      if (excess <= worst_excess) continue;
+      worst_excess = excess;
+      worst = {control_.contacts[i], f[2], tangential};
+    }
+    return worst;
+  }
+
+  // An internal force is to blame if the law leaves the cone with it and not without it.
+  void judge(int k, const std::vector<double>& all) {
+    std::vector<double> without = all;
+    without[static_cast<std::size_t>(k)] = 0.0;
+    if (overload(without)) without.assign(all.size(), 0.0);  // several are: this one by itself
+    std::vector<double> with = without;
+    with[static_cast<std::size_t>(k)] = all[static_cast<std::size_t>(k)];
+    if (const auto found = overload(with)) {
+      report(k, *found, Severity::error, with[static_cast<std::size_t>(k)], {});
+      return;
+    }
+    for (const int parameter : dependence_of(context_.behavior, spec(k).reference).parameters) {
+      judge_range(k, parameter, with);
+    }
+  }
+
+  // What an edit may ask for: each parameter at the ends of its range.
+  void judge_range(int k, int parameter, std::vector<double> internal) {
+    const ParameterInfo& info = context_.behavior.parameters[static_cast<std::size_t>(parameter)];
+    if (!info.has_range() || info.variable) return;
+    for (const double end : {info.min, info.max}) {
+      StaticValues edited(context_.behavior);
+      for (int i = 0; i < info.size; ++i) {
+        edited.parameters()[static_cast<std::size_t>(info.slot + i)] = end;
+      }
+      const auto value = edited.of(spec(k).reference);
+      if (!value) continue;
+      internal[static_cast<std::size_t>(k)] = spec(k).scale * *value;
+      if (const auto found = overload(internal)) {
+        report(k, *found, Severity::warning, internal[static_cast<std::size_t>(k)],
+               fmt::format(" at the end of the range of '{}'", info.name));
+        return;
+      }
+    }
+  }
+
+  void report(int k, const Overload& found, Severity severity, double force,
+              const std::string& where) {
+    const Behavior& b = context_.behavior;
+    const auto& contact = b.robot.contacts[static_cast<std::size_t>(found.contact)];
+    const std::string& name = b.internal_instances[static_cast<std::size_t>(spec(k).instance)];
+    const std::string what =
+        found.normal <= 0.0
+            ? fmt::format("{} would pull on the ground", contact.name)
+            : fmt::format(
+                  "{} would slip: {:.0f} N along the ground, at most {:g} x {:.0f} N = {:.0f} N",
+                  contact.name, found.tangential, contact.friction, found.normal,
+                  contact.friction * found.normal);
+    context_.findings.add(severity, spec(k).mark, "friction-cone", where,
+                          fmt::format("internal force '{}' of {:g} N at each foot leaves the "
+                                      "friction cone{}: standing still, {}",
+                                      name, force, where, what));
+  }
+
+  PhysicsContext& context_;
+  const ControlSpec& control_;
+  StaticValues values_;
+};
+
+}  // namespace
+
+void check_internal_forces(PhysicsContext& context, const ControlSpec& control) {
+  if (control.internals.count > 0) ForceCheck(context, control).run();
+}
+
+}  // namespace footfall::behaviors

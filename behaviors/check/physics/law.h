@@ -1,0 +1,63 @@
+// One configuration's control law at rest: its task rows and ranks as the whole-body controller
+// sees them, its joint torques and contact forces. Load time only.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "behaviors/compiled/behavior.h"
+#include "model/control_model.h"
+#include "tasks/solver/wbosc.h"
+#include "tasks/whole_body_controller.h"
+
+namespace footfall::behaviors {
+
+// One controlled axis of a configuration.
+struct TaskRow {
+  const TaskSpec* task = nullptr;
+  const AxisSpec* axis = nullptr;
+  bool of_joint = false;  // of a task on joints, which serves to fill what others leave
+};
+
+// Ranks of an ordered choice of rows, each as a priority level of its own.
+struct RowRanks {
+  std::vector<int> added;  // by row: 1 if it adds to what those before it control, else 0
+  int covered = 0;         // their sum
+  int actuated = 0;        // directions that torques can move with these contacts
+};
+
+// Torques and forces of one law at rest.
+struct RestSolution {
+  std::vector<double> tau;                    // N m, by joint, before limits
+  std::vector<std::array<double, 3>> forces;  // N, ground on robot, world, by contact of the law
+};
+
+class PhysicsLaw {
+ public:
+  // The model must outlive this and have been updated before each question.
+  PhysicsLaw(const Behavior& behavior, const model::ControlModel& model);
+
+  // All rows of a configuration, by priority, then in document order.
+  std::vector<TaskRow> rows(const ControlSpec& control) const;
+  // Each of the rows as a level of its own, in the order given, by the solver's rank rule.
+  RowRanks ranks(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);
+  // By joint: how much of a wish for its acceleration the rows leave to be met, 0 to 1 (diagonal of
+  // the orthogonal projector onto the joint accelerations that are left).
+  std::vector<double> freedom(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);
+  // The law with every task at its reference and at rest; `internal`: N at each contact, in the
+  // order of control.internals.
+  RestSolution rest(const ControlSpec& control, const std::vector<double>& internal);
+
+ private:
+  void assemble(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);
+
+  const Behavior& behavior_;
+  const model::ControlModel& model_;
+  std::vector<int> actuated_;
+  tasks::TaskMemory memory_;
+  tasks::Wbosc solver_;
+  tasks::WholeBodyController controller_;
+  std::unique_ptr<tasks::ActiveControl> control_;
+};
+
+}  // namespace footfall::behaviors

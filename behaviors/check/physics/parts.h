@@ -1,0 +1,43 @@
+// The parts of check_physics; see check.h. Load time only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "behaviors/check/physics/findings.h"
+#include "behaviors/check/physics/law.h"
+#include "behaviors/check/physics/values.h"
+#include "behaviors/compiled/behavior.h"
+#include "model/control_model.h"
+#include "model/state.h"
+
+namespace footfall::behaviors {
+
+// What every part reads.
+struct PhysicsContext {
+  const Behavior& behavior;
+  model::ControlModel& model;  // updated to a posture by whoever asks for one
+  PhysicsLaw& law;
+  const std::vector<model::State>& postures;  // the first is the nominal one
+  PhysicsFindings& findings;
+};
+
+// `right_foot and left_foot`, or `no contact`.
+std::string contacts_text(const Behavior& behavior, const std::vector<int>& contacts);
+// Name of an axis of a task: `yaw`, `z`, `left_knee`.
+std::string axis_name(const Behavior& behavior, const TaskRow& row);
+
+// Tasks against the freedom that the contacts leave, in the model's posture: axes that no contact
+// can produce (rank.cc).
+void check_ranks(PhysicsContext& context, const ControlSpec& control, core::Mark state);
+// Internal forces against the friction cone, in all postures in which the robot can stand without
+// them (forces.cc).
+void check_internal_forces(PhysicsContext& context, const ControlSpec& control);
+// References against joint limits, legs' reach and the robot's tilt limit (reach.cc).
+void check_references(PhysicsContext& context);
+// Step-to-step maps of the planners (planner.cc).
+void check_planners(PhysicsContext& context);
+// Torque steps where contacts change (steps.cc).
+void check_torque_steps(PhysicsContext& context);
+
+}  // namespace footfall::behaviors

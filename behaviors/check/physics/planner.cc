@@ -1,0 +1,175 @@
+// Planners whose step-to-step map diverges; see parts.h.
+//
+// [Kim16] V-B with E1, E2: from one change of support to the next, about the goal, the CoM's state
+// is multiplied by a matrix A' per axis of the heading frame (behaviors/planners/foot_planner.h).
+// Steps grow without bound where an eigenvalue lies outside -1 .. 1.
+//   h   the CoM's height: the reference of the state that asks, else that of the nominal posture
+//   T   a step: from the entry of the stride to the change of support that its `switch_in`
+//   predicts,
+//       i.e. the timed states before the one that asks, and `switch_in` at its entry
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "behaviors/check/physics/parts.h"
+#include "behaviors/machine/planner_calls.h"
+#include "core/index.h"
+
+namespace footfall::behaviors {
+namespace {
+
+using core::Severity;
+
+class PlannerCheck {
+ public:
+  explicit PlannerCheck(PhysicsContext& context) : context_(context), values_(context.behavior) {
+    context_.model.update(context_.postures.front());
+  }
+
+  void run() {
+    for (std::size_t p = 0; p < context_.behavior.planners.size(); ++p) {
+      const auto planner = static_cast<int>(p);
+      if (const auto timing = longest(planner)) judge(planner, *timing);
+    }
+    context_.findings.settle(1);
+  }
+
+ private:
+  struct Timing {
+    double step = 0.0;    // s
+    double height = 0.0;  // m
+  };
+  const Behavior& b() const { return context_.behavior; }
+
+  // Of a planner's invokes the one that asks for the whole step; others ask for what is left of it.
+  std::optional<Timing> longest(int planner) const {
+    std::optional<Timing> found;
+    for (const InvokeInfo& invoke : b().invokes) {
+      if (invoke.planner != planner || invoke.stance < 0) continue;
+      const auto ahead = values_.of(invoke.switch_in);
+      if (!ahead || *ahead <= 0.0) continue;
+      const double step = *ahead + before(invoke);
+      if (!found || step > found->step) found = Timing{step, height(invoke)};
+    }
+    return found;
+  }
+
+  // Time from the entry of the stride to that of the state that asks: states beside it that lead
+  // here by a timer, until one in which the planner is asked about the other foot.
+  double before(const InvokeInfo& invoke) const {
+    double time = 0.0;
+    std::vector<int> visited = {invoke.state};
+    for (int s = invoke.state;;) {
+      double duration = 0.0;
+      const int previous = timed_predecessor(s, duration);
+      const bool known = std::find(visited.begin(), visited.end(), previous) != visited.end();
+      if (previous < 0 || known || plans_otherwise(previous, invoke)) return time;
+      visited.push_back(previous);
+      time += duration;
+      s = previous;
+    }
+  }
+  int timed_predecessor(int s, double& duration) const {
+    const int parent = b().states[at(s)].parent;
+    for (const TransitionInfo& transition : b().transitions) {
+      if (transition.after < 0 || transition.guard >= 0 || transition.targets.count != 1) continue;
+      if (b().targets[at(transition.targets.first)] != s) continue;
+      if (b().states[at(transition.source)].parent != parent || transition.source == s) continue;
+      const auto after = values_.of(transition.after);
+      if (!after) continue;
+      duration = *after;
+      return transition.source;
+    }
+    return -1;
+  }
+  bool plans_otherwise(int s, const InvokeInfo& invoke) const {
+    return std::any_of(b().invokes.begin(), b().invokes.end(), [&](const InvokeInfo& other) {
+      return other.state == s && other.planner == invoke.planner && other.stance != invoke.stance;
+    });
+  }
+
+  // Height of the CoM above the stance foot.
+  double height(const InvokeInfo& invoke) const {
+    const double measured =
+        context_.model.com().position[2] - context_.model.point_position(invoke.stance)[2];
+    for (const TaskSpec& task : tasks_while(invoke.state)) {
+      if (task.type != tasks::TaskType::com_position) continue;
+      for (int a = task.axes.first; a < task.axes.end(); ++a) {
+        const AxisSpec& axis = b().axes[at(a)];
+        const Dependence needs = dependence_of(b(), axis.value);
+        if (axis.axis != 2 || axis.value < 0 || needs.measured || needs.entry) continue;
+        const double wanted = values_.of(axis.value).value_or(measured);
+        if (wanted > 0.0) return wanted;
+      }
+    }
+    return measured;
+  }
+  // Tasks of a configuration in which the state is active.
+  std::vector<TaskSpec> tasks_while(int s) const {
+    int sum = b().states[at(s)].control_weight;
+    for (int p = b().states[at(s)].parent; p >= 0; p = b().states[at(p)].parent) {
+      sum += b().states[at(p)].control_weight;
+    }
+    if (sum >= static_cast<int>(b().controls.size())) return {};
+    const Range& range = b().controls[at(sum)].tasks;
+    return {b().tasks.begin() + range.first, b().tasks.begin() + range.end()};
+  }
+
+  void judge(int planner, const Timing& timing) {
+    const PlannerInfo& info = b().planners[at(planner)];
+    const FootPlannerSpec spec = spec_in_force(info, b().values);
+    if (report(info, spec, timing, Severity::error, {})) return;
+    if (info.kappa_parameter < 0) return;
+    const ParameterInfo& parameter = b().parameters[at(info.kappa_parameter)];
+    if (!parameter.live || !parameter.has_range()) return;
+    for (const double end : {parameter.min, parameter.max}) {
+      FootPlannerSpec edited = spec;
+      edited.kappa = {end, end};
+      if (report(info, edited, timing, Severity::warning,
+                 fmt::format(" at the end of the range of '{}'", parameter.name))) {
+        return;
+      }
+    }
+  }
+
+  bool report(const PlannerInfo& info, const FootPlannerSpec& spec, const Timing& timing,
+              Severity severity, const std::string& where) {
+    double worst = 1.0;  // with kappa 0 one eigenvalue is 1 exactly: steps drift, but do not grow
+    std::size_t axis = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto pair = step_eigenvalues(spec.kappa[k], spec.reversal[k], timing.step,
+                                         timing.height, spec.gravity);
+      constexpr double kRounding = 1e-9;  // of the closed form, far below any printed digit
+      if (std::abs(pair[0]) <= std::abs(worst) + kRounding) continue;
+      worst = pair[0];
+      axis = k;
+    }
+    if (worst == 1.0) return false;
+    context_.findings.add(
+        severity, info.mark, "unstable-planner", where,
+        fmt::format(
+            "planner '{}' diverges{}: an eigenvalue of its step-to-step map in {} is {:.3f} "
+            "(kappa {:g}, reversal {:g} ms, height h {:.3f} m, step time T {:.3f} s), it must "
+            "lie within -1 and 1{}",
+            info.name, where, axis == 0 ? "x" : "y", worst, spec.kappa[axis],
+            1e3 * spec.reversal[axis], timing.height, timing.step,
+            spec.kappa[axis] < 0.0
+                ? "; kappa is positive here, the printed equation has its sign wrong"
+                : ""));
+    return true;
+  }
+
+  PhysicsContext& context_;
+  StaticValues values_;
+};
+
+}  // namespace
+
+void check_planners(PhysicsContext& context) {
+  if (!context.behavior.planners.empty()) PlannerCheck(context).run();
+}
+
+}  // namespace footfall::behaviors

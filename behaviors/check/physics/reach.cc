@@ -1,0 +1,177 @@
+// References against what the robot can do; see parts.h.
+//
+// Heights: a CoM or point can be no higher above the ground than it can be far from a contact point
+// that stands on it; that distance does not depend on how the base lies, only on the joints, and is
+// maximised over their limits. No false alarm on level ground: tilt, other tasks and other feet
+// only lower what can be reached.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "behaviors/check/physics/parts.h"
+
+namespace footfall::behaviors {
+namespace {
+
+using core::Severity;
+using tasks::TaskType;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+// The maximum is searched, not derived: coordinate ascent from several postures ends within a
+// fraction of a millimetre of it on legs of a few joints. A part in a hundred is allowed on top.
+constexpr double kSlack = 1.01;
+constexpr int kSweeps = 20;
+
+class ReachCheck {
+ public:
+  explicit ReachCheck(PhysicsContext& context) : context_(context), values_(context.behavior) {}
+
+  void run() {
+    for (const ControlSpec& control : context_.behavior.controls) {
+      for (int k = control.tasks.first; k < control.tasks.end(); ++k) {
+        const TaskSpec& task = context_.behavior.tasks[static_cast<std::size_t>(k)];
+        for (int a = task.axes.first; a < task.axes.end(); ++a) {
+          judge(control, task, context_.behavior.axes[static_cast<std::size_t>(a)]);
+        }
+      }
+    }
+    context_.findings.settle(1);
+  }
+
+ private:
+  void judge(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
+    if (axis.value < 0) return;
+    if (task.type == TaskType::joint_posture) {
+      judge_joint(task, axis);
+    } else if (task.type == TaskType::body_orientation && axis.axis < 2) {
+      judge_tilt(task, axis);
+    } else if ((task.type == TaskType::com_position || task.type == TaskType::point_position) &&
+               axis.axis == 2) {
+      judge_height(control, task, axis);
+    }
+  }
+
+  // The value whatever happens before: with the reference's start at `entry` where it counts.
+  std::optional<double> value(const AxisSpec& axis, double entry) const {
+    const Dependence needs = dependence_of(context_.behavior, axis.value);
+    if (needs.measured || needs.variable) return std::nullopt;
+    return values_.of(axis.value, entry);
+  }
+  // Below `low` or above `high` from wherever between them it started: which of the two, and what.
+  std::optional<double> outside(const AxisSpec& axis, double low, double high) const {
+    const auto from_low = value(axis, low);
+    const auto from_high = value(axis, high);
+    if (!from_low || !from_high) return std::nullopt;
+    if (*from_low > high && *from_high > high) return std::min(*from_low, *from_high);
+    if (*from_low < low && *from_high < low) return std::max(*from_low, *from_high);
+    return std::nullopt;
+  }
+
+  const std::string& name(const TaskSpec& task) const {
+    return context_.behavior.task_instances[static_cast<std::size_t>(task.instance)].name;
+  }
+  void add(const AxisSpec& axis, const std::string& subject, std::string text) {
+    context_.findings.add(Severity::error, axis.value_mark, "out-of-reach", subject,
+                          std::move(text));
+  }
+
+  void judge_joint(const TaskSpec& task, const AxisSpec& axis) {
+    const auto& joint = context_.behavior.robot.joints[static_cast<std::size_t>(axis.axis)];
+    const auto found = outside(axis, joint.position_min, joint.position_max);
+    if (!found) return;
+    add(axis, joint.name,
+        fmt::format("task '{}' asks for {:.4g} deg of '{}', whose limits are {:.4g} to {:.4g} deg",
+                    name(task), *found / kDegree, joint.name, joint.position_min / kDegree,
+                    joint.position_max / kDegree));
+  }
+
+  void judge_tilt(const TaskSpec& task, const AxisSpec& axis) {
+    const double limit = context_.behavior.robot.tilt_limit;
+    const auto found = outside(axis, -limit, limit);
+    if (!found) return;
+    const char* what = axis.axis == 0 ? "roll" : "pitch";
+    add(axis, what,
+        fmt::format(
+            "task '{}' asks for {} {:.4g} deg: above {:.4g} deg (the robot's limit of tilt) "
+            "it counts as fallen",
+            name(task), what, *found / kDegree, limit / kDegree));
+  }
+
+  void judge_height(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
+    if (control.contacts.empty()) return;
+    const int point = task.type == TaskType::com_position ? -1 : task.point;
+    double highest = farthest(control.contacts.front(), point);
+    for (const int contact : control.contacts) {
+      highest = std::min(highest, farthest(contact, point));
+    }
+    const bool com = point < 0;
+    const double lowest = com ? 0.0 : -highest;  // a point may go below, into a ditch
+    const auto found = outside(axis, lowest, highest);
+    if (!found) return;
+    add(axis, "z",
+        fmt::format("task '{}' asks for {} of {:.3g} m: {}", name(task),
+                    com ? "a centre of mass at a height" : "a point at a height", *found,
+                    *found < 0.0 ? "that is in the ground"
+                                 : fmt::format("on {} it can be {:.3g} m at most",
+                                               contacts_text(context_.behavior, control.contacts),
+                                               highest)));
+  }
+
+  // Largest distance of the CoM (-1) or a point from a contact point over the joints' limits, m.
+  double farthest(int contact, int point) {
+    const auto key = std::make_pair(contact, point);
+    if (const auto known = farthest_.find(key); known != farthest_.end()) return known->second;
+    double best = 0.0;
+    for (std::size_t k = 0; k < context_.postures.size(); k += 4) {
+      best = std::max(best, climb(context_.postures[k], contact, point));
+    }
+    return farthest_[key] = kSlack * best;
+  }
+
+  double distance(const model::State& state, int contact, int point) {
+    context_.model.update(state);
+    const auto& a = context_.model.point_position(contact);
+    const auto& b =
+        point < 0 ? context_.model.com().position : context_.model.point_position(point);
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  }
+
+  // Coordinate ascent: each joint in turn by a step that is halved where it no longer helps.
+  double climb(model::State state, int contact, int point) {
+    double best = distance(state, contact, point);
+    double step = 0.5;
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      bool better = false;
+      for (std::size_t j = 0; j < context_.behavior.robot.joints.size(); ++j) {
+        const auto& joint = context_.behavior.robot.joints[j];
+        for (const double move : {step, -step}) {
+          const double before = state.q[j];
+          state.q[j] = std::clamp(before + move, joint.position_min, joint.position_max);
+          const double now = distance(state, contact, point);
+          if (now > best) {
+            best = now;
+            better = true;
+          } else {
+            state.q[j] = before;
+          }
+        }
+      }
+      if (!better) step *= 0.5;
+    }
+    return best;
+  }
+
+  PhysicsContext& context_;
+  StaticValues values_;
+  std::map<std::pair<int, int>, double> farthest_;
+};
+
+}  // namespace
+
+void check_references(PhysicsContext& context) { ReachCheck(context).run(); }
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,219 @@
+// Loops that are taken within one tick, again and again, until `micro_steps` cuts them off: cycles
+// of event-less transitions that no time and no change of a condition holds back.
+//
+// A cycle without conditions is certain. Otherwise one condition, an expression of signals and
+// parameters, is taken to hold, or not to hold, for the length of a tick; where the way on depends
+// on yet another condition, nothing is said.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "behaviors/check/structure/structure.h"
+#include "behaviors/load/substitution.h"
+#include "core/index.h"
+
+namespace footfall::behaviors {
+namespace {
+
+constexpr std::size_t kMaxConditions = 500;  // beyond, the check is silent, not slow
+
+// What a transition waits for, if not for one of the conditions that are counted from 0.
+constexpr int kNever = -1, kAlways = -2, kUnknown = -3;
+
+// What is assumed for a tick: one of the conditions, -1 for none, and whether it holds.
+struct Assumption {
+  int condition = -1;
+  bool holds = false;
+};
+
+class LoopCheck {
+ public:
+  LoopCheck(LoadContext& context, const Reach& reach)
+      : context_(context), chart_(context.behavior), reach_(reach), entry_(chart_) {}
+
+  void report() {
+    look_at_transitions();
+    follow_all({});
+    for (int condition = 0; condition < static_cast<int>(conditions_.size()); ++condition) {
+      follow_all({condition, true});
+      follow_all({condition, false});
+    }
+    for (int t = 0; t < static_cast<int>(chart_.transitions.size()); ++t) check_staying(t);
+    for (const auto& finding : findings_.found()) {
+      context_.warning(finding.mark, "possible-loop", finding.text);
+    }
+  }
+
+ private:
+  struct Step {
+    int transition = -1;
+    int leaf = -1;  // -1: no step, or none that is sure
+  };
+
+  const StateInfo& state(int s) const { return chart_.states[at(s)]; }
+  const TransitionInfo& transition(int t) const { return chart_.transitions[at(t)]; }
+  int guard_of(Assumption given) const {
+    return given.condition < 0 ? -1 : transition(conditions_[at(given.condition)]).guard;
+  }
+
+  // What each transition waits for, computed once: its `after` in ticks (-1: not known), and which
+  // condition that only a new tick, or a `set`, can change.
+  void look_at_transitions() {
+    const int count = static_cast<int>(chart_.transitions.size());
+    for (int t = 0; t < count; ++t) {
+      const TransitionInfo& info = transition(t);
+      waits_.push_back(info.after < 0 ? 0 : planned_ticks(context_, info.after).value_or(-1));
+      conditions_of_.push_back(condition_of(t));
+    }
+  }
+
+  int condition_of(int t) {
+    const TransitionInfo& info = transition(t);
+    if (info.has_event || never_true(context_, t)) return kNever;
+    if (always_true(context_, t)) return kAlways;
+    if (reads(info.guard, Op::state_time) || reads(info.guard, Op::in_state)) {
+      return kUnknown;
+    }
+    const auto same = [&](int other) {
+      return same_expression(chart_, transition(other).guard, info.guard);
+    };
+    const auto found = std::find_if(conditions_.begin(), conditions_.end(), same);
+    if (found == conditions_.end() && conditions_.size() == kMaxConditions) return kUnknown;
+    if (found != conditions_.end()) return static_cast<int>(found - conditions_.begin());
+    conditions_.push_back(t);
+    return static_cast<int>(conditions_.size()) - 1;
+  }
+
+  bool reads(int guard, Op op, int index = -1) const {
+    const Expression& e = chart_.expressions[guard];
+    for (int k = e.first; k < e.first + e.count; ++k) {
+      const Instruction& i = chart_.expressions.code[at(k)];
+      if (i.op == op && (index < 0 || i.index == index)) return true;
+    }
+    return false;
+  }
+
+  // Whether the actions may change what the condition reads.
+  bool changes(Range actions, int guard) const {
+    for (int a = actions.first; a < actions.end() && guard >= 0; ++a) {
+      const ActionInfo& action = chart_.actions[at(a)];
+      if (action.kind == ActionKind::set && reads(guard, Op::parameter, action.index)) return true;
+    }
+    return false;
+  }
+
+  // The event-less transition that is taken from a leaf in no time; -1: none, or none that is sure.
+  int next_transition(int leaf, Assumption given) const {
+    for (int s = leaf; s >= 0; s = state(s).parent) {
+      const Range own = state(s).transitions;
+      for (int t = own.first; t < own.end(); ++t) {
+        const int condition = conditions_of_[at(t)];
+        if (condition == kNever || waits_[at(t)] > 0) continue;
+        if (condition == kUnknown || waits_[at(t)] < 0) return -1;
+        if (condition == kAlways) return t;
+        if (condition != given.condition) return -1;
+        if (given.holds) return t;
+      }
+    }
+    return -1;
+  }
+
+  Step next(int leaf, Assumption given) {
+    Step step{next_transition(leaf, given), -1};
+    if (step.transition < 0) return step;
+    const TransitionInfo& taken = transition(step.transition);
+    if (taken.targets.count == 0 || taken.domain < 0) return step;
+    const int guard = guard_of(given);
+    bool changed = changes(taken.actions, guard);
+    for (int s = leaf; s > taken.domain; s = state(s).parent) {
+      changed = changed || changes(state(s).on_exit, guard);
+    }
+    int found = -1;
+    for (const int s : entry_.of(taken)) {
+      changed = changed || changes(state(s).on_entry, guard);
+      if (state(s).kind == StateKind::parallel || state(s).kind == StateKind::final) return step;
+      if (state(s).kind == StateKind::atomic) found = s;
+    }
+    if (!changed) step.leaf = found;
+    return step;
+  }
+
+  void follow_all(Assumption given) {
+    std::vector<int> seen(chart_.states.size(), -1);  // by leaf: where the walk that came by began
+    for (int leaf = 0; leaf < static_cast<int>(chart_.states.size()); ++leaf) {
+      if (state(leaf).kind != StateKind::atomic || reach_.with_safe[at(leaf)] == 0) continue;
+      int now = leaf;
+      while (now >= 0 && seen[at(now)] < 0) {
+        seen[at(now)] = leaf;
+        now = next(now, given).leaf;
+      }
+      if (now >= 0 && seen[at(now)] == leaf) report_cycle(now, given);
+    }
+  }
+
+  void report_cycle(int start, Assumption given) {
+    std::string names = fmt::format("'{}'", state(start).path);
+    bool in_region = false;
+    int first = -1, leaf = start;
+    do {
+      const Step step = next(leaf, given);
+      if (first < 0 || step.transition < first) first = step.transition;
+      for (int s = leaf; s >= 0; s = state(s).parent) {
+        in_region = in_region || state(s).kind == StateKind::parallel;
+      }
+      leaf = step.leaf;
+      names += fmt::format(" -> '{}'", state(leaf).path);
+    } while (leaf != start);
+    if (!reported_.insert(first).second) return;
+    // A chart alone is only traced: it is bounded there, and nothing moves.
+    say(first, given.condition < 0 && !in_region && context_.behavior.has_robot,
+        fmt::format("{} is a loop that takes no time{}: it needs an `after` or a condition that "
+                    "ends it",
+                    names, condition_text(given)));
+  }
+
+  std::string condition_text(Assumption given) const {
+    if (given.condition < 0) return {};
+    const int t = conditions_[at(given.condition)];
+    const core::YamlNode& when = *transition_keys(context_, t).find("when");
+    return fmt::format(" {} '{}'", given.holds ? "while" : "unless", read_marked(when.scalar).text);
+  }
+
+  // Actions alone, without `to`: the state stays, and so does the condition.
+  void check_staying(int t) {
+    const TransitionInfo& info = transition(t);
+    if (info.has_event || info.after >= 0 || info.targets.count > 0) return;
+    if (conditions_of_[at(t)] == kNever) return;
+    if (reach_.with_safe[at(info.source)] == 0 || changes(info.actions, info.guard)) return;
+    if (info.guard >= 0 && reads(info.guard, Op::in_state)) return;
+    say(t, conditions_of_[at(t)] == kAlways && context_.behavior.has_robot,
+        "this is taken again and again in the same tick as long as `when` holds: take an event "
+        "(`on:`), or `after: 0 s`, which is taken once an entry");
+  }
+
+  void say(int t, bool certain, std::string text) {
+    const core::Mark mark = transition(t).mark;
+    if (certain) {
+      context_.error(mark, "zero-time-loop", std::move(text));
+    } else {
+      findings_.look(mark, true, std::move(text));
+    }
+  }
+
+  LoadContext& context_;
+  const Chart& chart_;
+  const Reach& reach_;
+  EntrySet entry_;
+  std::vector<std::int64_t> waits_;  // by transition
+  std::vector<int> conditions_of_;   // by transition
+  std::vector<int> conditions_;      // a transition that has it
+  std::set<int> reported_;           // by first transition
+  Findings findings_;
+};
+
+}  // namespace
+
+void check_loops(LoadContext& context, const Reach& reach) { LoopCheck(context, reach).report(); }
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,132 @@
+// Names that are given and never used: more often than not something else was misspelt.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "behaviors/check/structure/structure.h"
+#include "core/index.h"
+
+namespace footfall::behaviors {
+namespace {
+
+void collect_names(const std::string& text, std::set<std::string>& names) {
+  const auto is_name = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  for (std::size_t k = text.find('$'); k != std::string::npos; k = text.find('$', k)) {
+    const std::size_t first = ++k;
+    while (k < text.size() && is_name(text[k])) ++k;
+    names.insert(text.substr(first, k - first));
+  }
+}
+
+// Every `$name` in the text of a tree.
+void collect_names(const core::YamlNode& node, std::set<std::string>& names) {
+  collect_names(node.scalar, names);
+  for (const core::YamlNode& item : node.items) collect_names(item, names);
+  for (const core::YamlEntry& entry : node.entries) {
+    collect_names(entry.key, names);
+    collect_names(entry.value, names);
+  }
+}
+
+bool a_script_names(const LoadContext& context, const std::string& name) {
+  const auto& scripts = context.behavior.scripts;
+  return std::any_of(scripts.begin(), scripts.end(), [&](const ScriptFile& file) {
+    return file.text.find(name) != std::string::npos;
+  });
+}
+
+void check_parameters(LoadContext& context) {
+  const core::YamlNode* parameters = context.section("parameters");
+  if (parameters == nullptr) return;
+  std::set<std::string> used;
+  for (const core::YamlEntry& entry : context.root.entries) {
+    if (entry.key != "parameters") collect_names(entry.value, used);
+  }
+  std::set<std::string> watched;
+  for (const EventPattern& pattern : context.behavior.patterns) watched.insert(pattern.text);
+  for (const core::YamlEntry& entry : parameters->entries) {
+    if (used.contains(entry.key) || watched.contains("parameter.changed." + entry.key)) continue;
+    const int index = context.behavior.find_parameter(entry.key);
+    if (index < 0 || a_script_names(context, entry.key)) continue;
+    const bool set = context.behavior.parameters[at(index)].variable;
+    context.warning(entry.key_mark, "unused",
+                    fmt::format("parameter '{}' is {}: nothing reads ${}", entry.key,
+                                set ? "set, but never used" : "never used", entry.key));
+  }
+}
+
+bool is_mirrored(const LoadContext& context, const std::string& name) {
+  return std::any_of(context.mirrored.begin(), context.mirrored.end(),
+                     [&](const auto& mirrored) { return mirrored.first == name; });
+}
+
+// An argument may also be used in a stack that the template's states name; the first one of a
+// mirrored template names the two states.
+void check_arguments(LoadContext& context, const core::YamlEntry& entry,
+                     const std::set<std::string>& in_stacks) {
+  const core::YamlNode* args = entry.value.find("args");
+  if (args == nullptr) return;
+  std::set<std::string> used = in_stacks;
+  for (const core::YamlEntry& key : entry.value.entries) {
+    if (key.key != "args") collect_names(key.value, used);
+  }
+  for (const core::YamlNode& item : args->items) {
+    const bool names_states = &item == &args->items.front() && is_mirrored(context, entry.key);
+    if (used.contains(item.scalar) || names_states) continue;
+    context.warning(
+        item.mark, "unused",
+        fmt::format("argument '{}' of template '{}' is never used", item.scalar, entry.key));
+  }
+}
+
+void check_templates(LoadContext& context) {
+  const core::YamlNode* templates = context.section("templates");
+  if (templates == nullptr) return;
+  std::set<std::string> in_stacks;
+  if (const core::YamlNode* stacks = context.section("stacks")) collect_names(*stacks, in_stacks);
+  for (const core::YamlEntry& entry : templates->entries) {
+    const auto& used = context.used_templates;
+    if (std::find(used.begin(), used.end(), entry.key) == used.end()) continue;  // said elsewhere
+    check_arguments(context, entry, in_stacks);
+  }
+}
+
+void check_torque_loops(LoadContext& context) {
+  const core::YamlNode* tables = context.section("torque_loop");
+  if (tables == nullptr) return;
+  for (const core::YamlEntry& entry : tables->entries) {
+    const auto& used = context.used_torque_loops;
+    if (std::find(used.begin(), used.end(), entry.key) != used.end()) continue;
+    context.warning(entry.key_mark, "unused",
+                    fmt::format("torque_loop table '{}' is never used", entry.key));
+  }
+}
+
+void check_planners(LoadContext& context) {
+  const core::YamlNode* planners = context.section("planners");
+  if (planners == nullptr) return;
+  std::set<std::string> asked;
+  for (const InvokeInfo& invoke : context.behavior.invokes) {
+    if (invoke.planner >= 0) asked.insert(context.behavior.planners[at(invoke.planner)].name);
+  }
+  for (const core::YamlEntry& entry : planners->entries) {
+    if (asked.contains(entry.key)) continue;
+    context.warning(entry.key_mark, "unused",
+                    fmt::format("no state invokes planner '{}': it never plans", entry.key));
+  }
+}
+
+}  // namespace
+
+void check_unused(LoadContext& context) {
+  check_parameters(context);
+  check_templates(context);
+  check_torque_loops(context);
+  check_planners(context);
+}
+
+}  // namespace footfall::behaviors

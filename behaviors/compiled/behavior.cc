@@ -1,0 +1,38 @@
+// Look-ups by name, for outside the tick; see behavior.h.
+#include "behaviors/compiled/behavior.h"
+
+#include <algorithm>
+
+namespace footfall::behaviors {
+
+int Behavior::find_event(std::string_view event) const {
+  const auto found = std::find(events.begin(), events.end(), event);
+  return found == events.end() ? -1 : static_cast<int>(found - events.begin());
+}
+
+int Behavior::find_state(std::string_view state_path) const {
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    if (states[s].path == state_path) return static_cast<int>(s);
+  }
+  return -1;
+}
+
+int Behavior::find_parameter(std::string_view parameter) const {
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (parameters[k].name == parameter) return static_cast<int>(k);
+  }
+  return -1;
+}
+
+ParameterPart Behavior::find_parameter_part(std::string_view text) const {
+  const int whole = find_parameter(text);
+  const std::size_t dot = text.rfind('.');
+  if (whole >= 0 || dot == std::string_view::npos) return {whole, -1};
+  const int parameter = find_parameter(text.substr(0, dot));
+  if (parameter < 0) return {};
+  const int size = parameters[static_cast<std::size_t>(parameter)].size;
+  const int component = component_of(text.substr(dot + 1), size);
+  return component < 0 ? ParameterPart{} : ParameterPart{parameter, component};
+}
+
+}  // namespace footfall::behaviors

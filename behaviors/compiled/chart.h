@@ -1,0 +1,170 @@
+// A statechart as flat arrays, built at load and immutable in the tick. States are numbered in
+// document order (a state, then its children): a smaller index is earlier in the document, and the
+// descendants of `s` are exactly the indices s+1 .. states[s].end-1.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "behaviors/expression/expression.h"
+#include "core/diagnostics/diagnostics.h"
+
+namespace footfall::behaviors {
+
+// A stretch of another flat array.
+struct Range {
+  int first = 0;
+  int count = 0;
+  int end() const { return first + count; }
+};
+
+enum class StateKind : std::uint8_t {
+  atomic,
+  compound,
+  parallel,
+  final,
+  history_shallow,
+  history_deep,
+};
+
+// When a parallel state raises its `done.state` (region: index of a state in StateInfo).
+enum class DoneRule : std::uint8_t { all, any, region };
+
+struct StateInfo {
+  std::string name;
+  std::string path;  // dotted, from below the root; the root's is its own name
+  std::string doc;
+  core::Mark mark;
+  int parent = -1;
+  int end = 0;    // one past its last descendant
+  int depth = 0;  // of the root 0
+  StateKind kind = StateKind::atomic;
+  Range initial;      // into Chart::targets: compound: its default entry; history: its default
+  Range transitions;  // into Chart::transitions, in document order
+  Range on_entry;     // into Chart::actions
+  Range on_exit;
+  Range invokes;        // into Behavior::invokes
+  int done_event = -1;  // id of done.state.PATH
+  DoneRule done = DoneRule::all;
+  int done_region = -1;
+  int history = -1;        // slot of a history state
+  int control_weight = 0;  // the sum over active states is the index into Behavior::controls
+  bool reload = false;     // while it is active a changed file may take over
+};
+
+struct TransitionInfo {
+  core::Mark mark;
+  int source = 0;
+  Range targets;           // into Chart::targets; none: actions only, no exit, no entry
+  bool has_event = false;  // false: event-less
+  int guard = -1;          // expression, -1: none
+  int after = -1;          // expression of a time, -1: none
+  bool internal = false;
+  int domain = -1;  // precomputed; -1: no targets, or a history target (then at run time)
+  Range actions;
+  std::string reason;
+};
+
+enum class ActionKind : std::uint8_t { raise, set, log, mark, call };
+
+// What a registered C++ function may touch in the tick: it reads signals and reads and writes
+// parameters. It must be realtime-safe. False raises error.execution and skips the rest of the
+// list.
+struct NativeCall {
+  const double* signals = nullptr;
+  std::span<double> parameters;
+  double time = 0.0;  // s
+};
+using NativeFunction = bool (*)(NativeCall& call) noexcept;
+
+// A function that `call:` names: in C++, run at once; without it one of a script, run outside of
+// the tick.
+struct CallInfo {
+  std::string name;
+  NativeFunction native = nullptr;
+};
+
+// What a tick asks of the scripts: to call a function, or to handle an event.
+struct ScriptRequest {
+  bool is_event = false;
+  int index = 0;  // into Chart::events or Chart::calls
+};
+
+struct ActionInfo {
+  ActionKind kind = ActionKind::raise;
+  int index = 0;        // event, parameter's slot, text, mark or call
+  int expression = -1;  // of `set`
+  double min = 0.0;     // of `set`: range, equal: none
+  double max = 0.0;
+};
+
+// `log: TEXT`: literal pieces around the values of expressions.
+struct LogText {
+  std::vector<std::string> pieces;  // one more than expressions
+  std::vector<int> expressions;
+};
+
+inline constexpr int kMaxLogValues = 8;
+
+// An event or prefix that a transition listens to, as rule 7 writes it.
+struct EventPattern {
+  int transition = 0;
+  std::string text;
+  core::Mark mark;
+};
+
+struct Chart {
+  std::int64_t rate_mhz = 1'000'000;  // ticks per second, in millihertz
+  int micro_steps = 64;               // bound in one tick
+  ExpressionPool expressions;
+  std::vector<StateInfo> states;  // [0] is the root
+  std::vector<TransitionInfo> transitions;
+  std::vector<int> targets;
+  std::vector<ActionInfo> actions;
+  std::vector<LogText> logs;
+  std::vector<std::string> marks;
+  std::vector<CallInfo> calls;
+  std::vector<std::string> events;
+  std::vector<EventPattern> patterns;
+  // Which events enable which transition. In the order of event_ranks, what a pattern names lies
+  // together: a stretch of ranks for each pattern, and for each transition its stretches.
+  std::vector<int> event_ranks;             // by event
+  std::vector<Range> heard_ranks;           // of ranks, transition by transition
+  std::vector<Range> heard_events;          // by transition: into heard_ranks
+  std::vector<std::uint8_t> script_events;  // by event: a script handles it; empty: none
+  int safe_transition = -1;                 // to the root's `safe` state, -1: none
+  int history_count = 0;
+  int error_execution = -1;  // event id
+  int event_overflow = -1;   // event id
+
+  double period() const { return 1e3 / static_cast<double>(rate_mhz); }
+  bool is_descendant(int state, int ancestor) const {
+    return state > ancestor && state < states[static_cast<std::size_t>(ancestor)].end;
+  }
+  bool matches(int transition, int event) const {
+    const int rank = event_ranks[static_cast<std::size_t>(event)];
+    const Range own = heard_events[static_cast<std::size_t>(transition)];
+    for (int k = own.first; k < own.end(); ++k) {
+      const Range heard = heard_ranks[static_cast<std::size_t>(k)];
+      if (rank >= heard.first && rank < heard.end()) return true;
+    }
+    return false;
+  }
+  // Fills event_ranks and what is heard from the patterns, for all events there are.
+  void match_events();
+  // The innermost compound state, or the root, that properly contains `source` and all targets.
+  // Source: W3C SCXML 1.0, Appendix D, getTransitionDomain and findLCCA.
+  int domain_of(const TransitionInfo& transition, const int* first_target, int count) const;
+  // Whether `event` is `pattern`, lies below it (`fault.*`: `fault` and all below), or it is `*`.
+  static bool event_matches(std::string_view pattern, std::string_view event);
+};
+
+// Number of whole periods that `seconds` lasts: ceil(D * rate) with D rounded to nanoseconds, in
+// whole numbers, so that 16 ms at 1500 Hz is 24 always. -1 if D is negative, not finite or above
+// 10^6 s.
+std::int64_t periods_of(double seconds, std::int64_t rate_mhz) noexcept;
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,21 @@
+// What a guard was made of and what each part gave: for explanations after a run, never in a tick.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "behaviors/compiled/behavior.h"
+
+namespace footfall::behaviors {
+
+// A part of a guard between `and`, `or` and `not`.
+struct GuardTerm {
+  std::string text;  // with its values: `contact.left_foot false`, `t 0.081 s < 0.145 s`
+  bool holds = false;
+};
+
+// The terms of an expression in the order in which they are written, evaluated in `context`.
+std::vector<GuardTerm> guard_terms(const Behavior& behavior, int expression,
+                                   const EvaluationContext& context);
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,161 @@
+// Expressions of the behavior language: compiled at load to flat postfix code and lowered to steps
+// that the tick runs without allocation. Dimensions are checked by the compiler; a value that is
+// not finite (division by zero, log of a negative number) is the caller's to judge.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "behaviors/expression/parameter.h"
+#include "behaviors/expression/program.h"
+#include "core/signal_table.h"
+#include "core/units/units.h"
+
+namespace footfall::behaviors {
+
+inline constexpr int kExpressionStack = 32;  // values that an expression may hold at once
+
+enum class Op : std::uint8_t {
+  constant,    // value
+  parameter,   // parameters[index]
+  signal,      // signals[index]
+  state_time,  // s since state `index` was entered
+  time,        // s since start
+  in_state,    // 1 while state `index` is active
+  entry,       // entry[index]: what the task's reference started from
+  negate,
+  logical_not,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  less,
+  less_equal,
+  greater,
+  greater_equal,
+  equal,
+  not_equal,
+  logical_and,
+  logical_or,
+  select,
+  absolute,
+  minimum,
+  maximum,
+  clamp,
+  square_root,
+  sine,
+  cosine,
+  arctangent2,
+  hypotenuse,
+  exponential,
+  logarithm,
+};
+
+struct Instruction {
+  Op op = Op::constant;
+  std::int32_t index = 0;
+  double value = 0.0;
+};
+
+// One compiled expression: a stretch of the pool's code, and how the tick gets its value.
+struct Expression {
+  int first = 0;
+  int count = 0;
+  core::Dimension dimension;
+  bool bare = false;      // only numbers without unit: took the dimension that was needed
+  bool constant = false;  // the same in every tick
+
+  enum class Form : std::uint8_t { constant, parameter, signal, step, program };
+  Form form = Form::program;
+  int index = 0;       // of the parameter's slot or the signal
+  int program = 0;     // its first step in the pool's program
+  double value = 0.0;  // of the constant
+};
+
+// All expressions of a behavior, by index.
+struct ExpressionPool {
+  std::vector<Instruction> code;
+  std::vector<Step> program;
+  std::vector<Expression> expressions;
+
+  const Expression& operator[](int index) const {
+    return expressions[static_cast<std::size_t>(index)];
+  }
+  int size() const { return static_cast<int>(expressions.size()); }
+  // An expression in postfix code.
+  int add(std::vector<Instruction> postfix, core::Dimension dimension, bool bare, bool constant);
+  // A constant as an expression.
+  int add_constant(double value, core::Dimension dimension);
+  // A signal as an expression.
+  int add_signal(int signal, core::Dimension dimension);
+  // A parameter's slot as an expression.
+  int add_parameter(int slot, core::Dimension dimension);
+};
+
+// What an expression reads in a tick.
+struct EvaluationContext {
+  const double* signals = nullptr;
+  const double* parameters = nullptr;
+  const std::int64_t* entry_ticks = nullptr;  // by state
+  const std::uint8_t* active = nullptr;       // by state
+  const double* entry = nullptr;              // by axis of the task
+  std::int64_t tick = 0;
+  double period = 1e-3;  // s
+};
+
+// The value; not finite when some part of it that counts is not. Comparisons and logic give 0 or 1.
+inline double evaluate(const ExpressionPool& pool, int expression,
+                       const EvaluationContext& context) noexcept {
+  const Expression& e = pool[expression];
+  switch (e.form) {
+    case Expression::Form::constant:
+      return e.value;
+    case Expression::Form::parameter:
+      return context.parameters[e.index];
+    case Expression::Form::signal:
+      return context.signals[e.index];
+    case Expression::Form::step: {  // nothing to put aside
+      const Step* step = pool.program.data() + e.program;
+      return step->kernel(step, 0.0, context, nullptr);
+    }
+    default:
+      return run_program(pool.program.data() + e.program, context);
+  }
+}
+
+// The names that an expression may use.
+struct ExpressionScope {
+  const core::SignalTable* signals = nullptr;
+  const std::vector<ParameterInfo>* parameters = nullptr;
+  int state = -1;  // whose `t` it is; -1: `t` is not available
+  // Index of a state by its (partial) name; -1 and a reason otherwise.
+  std::function<int(std::string_view name, std::string& why)> find_state;
+  const std::vector<std::string>* entry_axes = nullptr;            // names of `entry.AXIS`
+  int entry_axis = -1;                                             // what a lone `entry` is
+  core::Dimension entry_dimension;                                 // of the task's axes
+  const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
+  // `max mean rms count` of one signal over a run (expectations only), "max abs" of its magnitude:
+  // the index of the signal that holds it, -1 if there is none.
+  std::function<int(std::string_view reduction, int signal)> find_reduction;
+};
+
+// Where and why an expression was refused; `offset` counts bytes from the start of the text.
+struct ExpressionError {
+  int offset = 0;
+  std::string id;
+  std::string text;
+};
+
+// Compiles `text` (without a leading `=`) and appends it to the pool. `expected` is checked if
+// given; a number without unit adopts the dimension needed. Returns -1 and fills `error` on
+// failure.
+int compile_expression(std::string_view text, const ExpressionScope& scope,
+                       std::optional<core::Dimension> expected, ExpressionPool& pool,
+                       ExpressionError& error);
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,181 @@
+// Tasks, internal forces and trajectories; see language.h.
+#include "behaviors/language/language.h"
+
+namespace footfall::behaviors {
+namespace {
+
+using namespace core;  // the words in which tables are written
+
+// Each has its TaskTypeInfo (behaviors/load/control/signals.cc), a test holds them together.
+constexpr WordSpec kTaskTypeRows[] = {
+    {"com_position", "the centre of mass"},
+    {"body_orientation",
+     "the floating base's orientation, about the axes of the heading frame; an axis left out is "
+     "free"},
+    {"point_position", "a named point or contact"},
+    {"joint_posture", "joint angles"},
+    {"joint_damping", "brings joints to rest: kd only, no reference"},
+    {"frame_orientation",
+     "the orientation of a named point's frame; roll, pitch and yaw as in body_orientation"},
+    {"frame_pose", "place and orientation of a named point's frame"},
+    {"centroidal_angular_momentum",
+     "angular momentum h about the centre of mass: h' = h'_ref + kd e + kp ∫e, no ki"},
+};
+
+constexpr WordSpec kFrameRows[] = {
+    {"world", "fixed"},
+    {"stance", "positions: from the mean of the contact points in force, the world's directions"},
+    {"heading", "upright, turned to where the base (a frame_orientation: the frame itself) looks"},
+};
+
+constexpr ValueSpec kReferenceValue =
+    computed(by_axis(any_quantity("m, or rad; `entry` is where the task started")));
+
+constexpr KeySpec kTaskRows[] = {
+    key("type", choice(kTaskTypeRows), "what is controlled; a state may leave it to the stack")
+        .required(),
+    key("axes", list(name_of("an axis")),
+        "which axes; one left out is free, the order is that of "
+        "`reference` and gains")
+        .otherwise("all")
+        .only("com_position body_orientation point_position frame_orientation frame_pose "
+              "centroidal_angular_momentum"),
+    key("joints", list(name_of("a joint")), "which joints, by name or glob (\"*_hip\")")
+        .otherwise("all")
+        .only("joint_posture joint_damping"),
+    key("point", name_of("a contact or point"), "which point of the robot; needed")
+        .only("point_position frame_orientation frame_pose"),
+    key("frame", choice(kFrameRows), "in which its axes are meant")
+        .otherwise("world; orientations heading")
+        .only("com_position body_orientation point_position frame_orientation frame_pose "
+              "centroidal_angular_momentum"),
+    key("priority", integer(1, 1000),
+        "its level: a larger number acts only in the null space of the smaller ones")
+        .otherwise("1"),
+    key("weight", computed(by_axis(quantity(kNone))), "against the other tasks of its level")
+        .otherwise("1"),
+    key("reference", kReferenceValue, map_of(kTrajectoryKeys),
+        "what it should be: a value an axis (number, expression, signal, `planner.NAME.target`), "
+        "or a trajectory")
+        .only("com_position body_orientation point_position joint_posture frame_orientation "
+              "frame_pose centroidal_angular_momentum"),
+    key("gains", name_of("a gain table"), map_of(kGainsKeys),
+        "its gains, or another table that has them")
+        .otherwise("those of the state's or stack's table"),
+    key("integral_limit", computed(by_axis(any_quantity("m s or rad s"))),
+        "bound of the integral of the error on each axis")
+        .otherwise("none"),
+    key("acceleration_limit", computed(by_axis(any_quantity("m/s^2 or rad/s^2"))),
+        "bound of the acceleration it asks for on each axis")
+        .otherwise("none"),
+    key("doc", text_of("a text"), "what it is for, in a line"),
+};
+
+constexpr WordSpec kConventionRows[] = {
+    {"mean", "the reference is the force at each contact"},
+    {"sum", "the reference is twice that: the paper's way"},
+};
+
+constexpr WordSpec kBetweenRows[] = {
+    {"all", "every pair of the contacts in force that has no internal force of its own"},
+};
+
+constexpr KeySpec kInternalRows[] = {
+    key("between", pair(name_of("a contact")), choice(kBetweenRows), "the two contacts, or all")
+        .required(),
+    key("reference", computed(quantity(kForce)), "positive pushes them apart").required(),
+    key("feedback", computed(quantity(kNone)), "gain on the error of the measured force")
+        .otherwise("0"),
+    key("convention", choice(kConventionRows), "what `reference` counts").otherwise("mean"),
+    key("doc", text_of("a text"), "what it is for, in a line"),
+};
+
+constexpr WordSpec kTrajectoryRows[] = {
+    {"hold", "stays where it is"},
+    {"polynomial", "of order 3 or 5, from value and velocity at entry"},
+    {"cosine", "half a cosine wave, at rest at both ends"},
+    {"minimum_jerk", "the smoothest motion"},
+    {"ellipse", "turns about a centre, growing from nothing"},
+    {"waypoints", "passes points smoothly"},
+    {"surface", "the world's surface below, and a height above it: axes [z] of a position"},
+};
+constexpr std::string_view kGoing = "polynomial cosine minimum_jerk ellipse surface";
+constexpr std::string_view kLasting = "polynomial cosine minimum_jerk ellipse surface waypoints";
+constexpr std::string_view kArriving = "polynomial minimum_jerk ellipse surface waypoints";
+constexpr std::string_view kFollowing = "polynomial cosine minimum_jerk surface";
+
+constexpr WordSpec kDirectionRows[] = {
+    {"positive", "from the first axis towards the second"},
+    {"negative", "the other way"},
+};
+
+constexpr KeySpec kWaypointRows[] = {
+    key("at", computed(quantity(kTime)), quantity(kNone, "a part of `over`"),
+        "when: since entry, or a part of the trajectory's `over`"),
+    key("over", computed(quantity(kTime)), "or: since the point before"),
+    key("to", kReferenceValue, "where; an axis left out of a map goes on to its next point")
+        .required(),
+};
+
+constexpr KeySpec kTrajectoryKeyRows[] = {
+    key("trajectory", choice(kTrajectoryRows), "its shape").required(),
+    key("order", integer(3, 5), "3 or 5").only("polynomial"),
+    key("to", kReferenceValue,
+        "where it ends; an axis left out of a map stays. Ellipse: of its centre; surface: height "
+        "above it")
+        .only(kGoing),
+    key("over", computed(quantity(kTime)), "how long it takes, read at entry").only(kLasting),
+    key("end_velocity", computed(by_axis(any_quantity("m/s or rad/s"))),
+        "velocity at the end, kept afterwards; read at entry, as `to` is: the whole way depends on "
+        "it")
+        .otherwise("0")
+        .only(kArriving),
+    key("retarget", boolean(), quantity(kNone, "a part of `over`, at most 95 %"),
+        "whether it follows a `to` that changes: true (for 80 % of `over`), or for which part")
+        .otherwise("false")
+        .only(kFollowing),
+    key("radius", computed(by_axis(any_quantity("m or rad"))), "of the ellipse along each axis")
+        .only("ellipse"),
+    key("period", computed(quantity(kTime)), "of a turn").only("ellipse"),
+    key("phase", computed(by_axis(quantity(kNone, "an angle"))), "of the turn at entry")
+        .otherwise("0")
+        .only("ellipse"),
+    key("direction", choice(kDirectionRows), "of the turn").otherwise("positive").only("ellipse"),
+    key("ramp", computed(quantity(kTime)), "in which it grows from nothing, read at entry")
+        .otherwise("one period")
+        .only("ellipse"),
+    key("points", list(map_of(kWaypointKeys)), "what it passes, in their order").only("waypoints"),
+};
+
+}  // namespace
+
+constinit const core::KeyTable kTaskKeys = {
+    .id = "task",
+    .doc =
+        "Something to control, with a priority. A task in force before (same name, type and "
+        "point) keeps its reference and integral.",
+    .keys = kTaskRows,
+    .part = true,
+    .selector = "type",
+    .variants = kTaskTypeRows};
+constinit const core::KeyTable kInternalKeys = {
+    .id = "internal",
+    .doc = "A force between contacts that moves nothing. Pairs that are not named get 0 N.",
+    .keys = kInternalRows,
+    .part = true};
+constinit const core::KeyTable kWaypointKeys = {
+    .id = "waypoint", .doc = "A point that is passed, and when.", .keys = kWaypointRows};
+constinit const core::KeyTable kTrajectoryKeys = {
+    .id = "trajectory",
+    .doc = "A motion from the value at entry, with feed-forward.",
+    .keys = kTrajectoryKeyRows,
+    .part = true,
+    .selector = "trajectory",
+    .variants = kTrajectoryRows};
+constinit const std::span<const core::WordSpec> kTaskTypes = kTaskTypeRows;
+constinit const std::span<const core::WordSpec> kFrames = kFrameRows;
+constinit const std::span<const core::WordSpec> kConventions = kConventionRows;
+constinit const std::span<const core::WordSpec> kDirections = kDirectionRows;
+constinit const std::span<const core::WordSpec> kTrajectories = kTrajectoryRows;
+
+}  // namespace footfall::behaviors

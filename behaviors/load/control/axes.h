@@ -1,0 +1,30 @@
+// Values of a task by axis: one number for all, a list, a map by axis (joints: with globs), a
+// vector parameter or a vector of signals. Load time only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "behaviors/load/context.h"
+
+namespace footfall::behaviors {
+
+// Where the values of a task's axes are written, and what they are.
+struct AxesScope {
+  const std::vector<std::string>& names;
+  const std::vector<core::Dimension>& positions;  // of the task's axes: what `entry` is
+  std::vector<core::Dimension> dimensions;        // of the values
+  int owner = 0;                                  // state whose `t` it is
+  bool joints = false;
+  bool entry = false;  // `entry` means something here
+};
+
+// The positions' dimensions times `factor`.
+std::vector<core::Dimension> scaled(const std::vector<core::Dimension>& positions,
+                                    core::Dimension factor);
+
+// One expression an axis; -1 where nothing is said, which only `partial` allows, or after an error.
+std::vector<int> compile_axes(LoadContext& context, const core::YamlNode& node,
+                              const AxesScope& axes, bool partial);
+
+}  // namespace footfall::behaviors

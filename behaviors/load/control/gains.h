@@ -1,0 +1,37 @@
+// Gains of a task, from a table or written in it. Load time only.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "behaviors/load/control/axes.h"
+
+namespace footfall::behaviors {
+
+inline constexpr std::array<const char*, 3> kGainNames = {"kp", "ki", "kd"};
+
+// An entry in force for a task, and the state whose word it is.
+struct GainSource {
+  GainEntry* entry = nullptr;
+  const core::YamlNode* node = nullptr;  // its words, with that state's arguments put in
+  int owner = 0;
+};
+
+// Entry of a table for a task, nullptr if there is none.
+GainEntry* find_gains(LoadContext& context, const std::string& table, const std::string& task);
+// Whether a table of this name exists; an error otherwise.
+bool require_gain_table(LoadContext& context, const core::YamlNode& name);
+// Gains written in a task: `gains.OWNER.TASK`.
+GainEntry* inline_gains(LoadContext& context, const std::string& owner, const std::string& task,
+                        const core::YamlNode& node);
+// One of kGainNames into the axes: slots, made at the entry's first use, when the number of axes is
+// known; or, where it is an expression, that.
+void use_gain(LoadContext& context, const GainSource& source, std::size_t gain,
+              const AxesScope& axes, std::vector<AxisSpec>& out);
+// Warns of what tasks miss in their gains, if all else is well.
+void warn_incomplete_gains(LoadContext& context);
+// Checks what no task uses.
+void make_unused_gains(LoadContext& context);
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,114 @@
+// Internal forces of a draft, pair by pair; see tasks.h.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "behaviors/language/language.h"
+#include "behaviors/load/control/tasks.h"
+
+namespace footfall::behaviors {
+namespace {
+
+using Pair = std::array<int, 2>;
+
+// The pairs that `between` names; `all`: every pair of the contacts in force.
+std::vector<Pair> read_between(LoadContext& context, const core::YamlNode& node,
+                               const std::vector<int>& contacts) {
+  std::vector<Pair> pairs;
+  if (node.is_scalar() && node.scalar == "all") {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      for (std::size_t j = i + 1; j < contacts.size(); ++j) {
+        pairs.push_back({contacts[i], contacts[j]});
+      }
+    }
+    return pairs;
+  }
+  if (!node.is_sequence() || node.items.size() != 2) {
+    core::report_expected(node, "two contacts or `all`", context.diagnostics);
+    return pairs;
+  }
+  const Pair pair = {context.require_contact(node.items[0]),
+                     context.require_contact(node.items[1])};
+  if (pair[0] < 0 || pair[1] < 0) return pairs;
+  if (pair[0] == pair[1]) {
+    context.error(node.items[1].mark, "same-foot",
+                  "an internal force acts between two feet, not one");
+    return pairs;
+  }
+  return {pair};
+}
+
+bool same_pair(const InternalSpec& a, const Pair& b) {
+  return (a.contact_a == b[0] && a.contact_b == b[1]) ||
+         (a.contact_a == b[1] && a.contact_b == b[0]);
+}
+
+// What an internal force says but for its pair; nothing after an error.
+std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem& item) {
+  core::YamlNode map;
+  map.kind = core::YamlNode::Kind::map;
+  for (const DraftKey& key : item.keys)
+    map.entries.push_back({key.key, key.mark, false, *key.node});
+  core::check_keys(map, kInternalKeys, context.diagnostics);
+  const DraftKey* reference = item.find("reference");
+  if (item.find("between") == nullptr || reference == nullptr) {
+    context.error(item.mark, "missing-key",
+                  fmt::format("internal force '{}' needs `between` and `reference`", item.name));
+    return std::nullopt;
+  }
+  InternalSpec spec;
+  ValueScope scope;
+  scope.state = reference->owner;
+  spec.mark = reference->node->mark;
+  spec.reference = context.compile_value(*reference->node, core::kForce, scope);
+  spec.feedback = compile_limit(context, item, "feedback", core::kNone);
+  if (const DraftKey* convention = item.find("convention")) {
+    const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
+    if (choice && *choice == 1) spec.scale = 0.5;
+  }
+  const auto& names = context.behavior.internal_instances;
+  while (names[static_cast<std::size_t>(spec.instance)] != item.name) ++spec.instance;
+  return spec;
+}
+
+bool is_all(const DraftItem& item) {
+  const DraftKey* between = item.find("between");
+  return between != nullptr && between->node->is_scalar() && between->node->scalar == "all";
+}
+
+}  // namespace
+
+std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& draft,
+                                            const std::vector<int>& contacts) {
+  std::vector<InternalSpec> out;
+  const auto named = [&](const Pair& pair) {
+    return std::any_of(out.begin(), out.end(), [&](const auto& s) { return same_pair(s, pair); });
+  };
+  for (const bool all : {false, true}) {  // a pair's own word goes before what all pairs get
+    for (const DraftItem& item : draft.internals) {
+      if (is_all(item) != all) continue;
+      const std::optional<InternalSpec> force = compile_force(context, item);
+      if (!force) continue;
+      const core::YamlNode& between = *item.find("between")->node;
+      for (const Pair& pair : read_between(context, between, contacts)) {
+        if (!named(pair)) {
+          out.push_back(*force);
+          out.back().contact_a = pair[0];
+          out.back().contact_b = pair[1];
+        } else if (!all) {
+          context.error(between.mark, "duplicate",
+                        "another internal force acts between these two contacts already");
+        }
+      }
+    }
+  }
+  if (out.size() > static_cast<std::size_t>(core::kMaxInternal)) {
+    context.error(
+        draft.internals.front().mark, "too-many",
+        fmt::format("{} internal forces at once; at most {}", out.size(), core::kMaxInternal));
+    out.clear();
+  }
+  return out;
+}
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,132 @@
+// --set NAME=VALUE: edits of the file's tree before anything is compiled, so that an override is
+// checked exactly like what it replaces.
+#include <fmt/format.h>
+
+#include "behaviors/load/context.h"
+#include "core/text/dotted_name.h"
+
+namespace footfall::behaviors {
+namespace {
+
+std::vector<std::string> keys_of(const core::YamlNode& map) {
+  std::vector<std::string> keys;
+  for (const core::YamlEntry& entry : map.entries) keys.push_back(entry.key);
+  return keys;
+}
+
+core::YamlNode* child(core::YamlNode& map, std::string_view key) {
+  for (core::YamlEntry& entry : map.entries) {
+    if (entry.key == key) return &entry.value;
+  }
+  return nullptr;
+}
+
+void put_or_replace(core::YamlNode& map, const std::string& key, core::YamlNode value) {
+  if (core::YamlNode* old = child(map, key)) {
+    *old = std::move(value);
+  } else {
+    const core::Mark mark = value.mark;
+    map.entries.push_back({key, mark, false, std::move(value)});
+  }
+}
+
+// The map that `parts` (all but the last) leads to, nullptr and an error otherwise.
+core::YamlNode* walk(LoadContext& context, core::YamlNode& start, const std::string& name,
+                     const std::vector<std::string>& parts, core::Mark mark) {
+  core::YamlNode* node = &start;
+  for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
+    core::YamlNode* next = node->is_map() ? child(*node, parts[k]) : nullptr;
+    if (next == nullptr || !next->is_map()) {
+      context.error(mark, "unknown-setting",
+                    fmt::format("--set {}: there is no '{}'{}", name, parts[k],
+                                core::did_you_mean(parts[k], keys_of(*node))));
+      return nullptr;
+    }
+    node = next;
+  }
+  return node;
+}
+
+// The unit that a value, or else the range beside it, is written with.
+std::optional<core::Dimension> written_dimension(const core::YamlNode& node) {
+  if (node.is_scalar()) {
+    const auto quantity = core::parse_quantity(node.scalar);
+    return quantity && !quantity->bare ? std::optional(quantity->dimension) : std::nullopt;
+  }
+  for (const core::YamlNode& item : node.items) {
+    if (const auto dimension = written_dimension(item)) return dimension;
+  }
+  for (const char* key : {"value", "range"}) {
+    const core::YamlNode* part = node.find(key);
+    const auto dimension = part == nullptr ? std::nullopt : written_dimension(*part);
+    if (dimension) return dimension;
+  }
+  return std::nullopt;
+}
+
+void set_parameter(LoadContext& context, const std::string& name, core::YamlNode value) {
+  core::YamlNode* parameters = child(context.root, "parameters");
+  core::YamlNode* parameter = parameters == nullptr ? nullptr : child(*parameters, name);
+  if (parameter == nullptr) {
+    std::vector<std::string> known = {"gains", "planners"};
+    if (parameters != nullptr) known = keys_of(*parameters);
+    context.error(value.mark, "unknown-parameter",
+                  fmt::format("--set {}: unknown parameter '{}'{}", name, name,
+                              core::did_you_mean(name, known)));
+    return;
+  }
+  const auto had = written_dimension(*parameter), has = written_dimension(value);
+  if (had && has && !(*had == *has)) {
+    context.error(value.mark, "dimension",
+                  fmt::format("--set {}: expected {}, got {}", name, core::dimension_name(*had),
+                              core::describe(value)));
+  } else if (parameter->is_map()) {
+    put_or_replace(*parameter, "value", std::move(value));
+  } else {
+    *parameter = std::move(value);
+  }
+}
+
+void set_gain(LoadContext& context, const std::string& name, std::vector<std::string> parts,
+              core::YamlNode value) {
+  core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
+  const std::string& last = parts.back();
+  if (map == nullptr) return;
+  if (parts.size() == 4 && (last == "kp" || last == "ki" || last == "kd")) {
+    put_or_replace(*map, last, std::move(value));
+    return;
+  }
+  context.error(value.mark, "unknown-setting",
+                fmt::format("--set {}: expected gains.TABLE.TASK.kp, ki or kd", name));
+}
+
+void apply(LoadContext& context, const std::string& name, const std::string& text) {
+  core::YamlNode value = core::load_yaml_text(text, "--set " + name, context.diagnostics);
+  if (value.is_null()) {
+    if (!context.diagnostics.has_errors()) {
+      context.error({}, "expected", fmt::format("--set {}: expected a value", name));
+    }
+    return;
+  }
+  const std::vector<std::string> parts = core::split_dots(name);
+  if (parts[0] == "gains") {
+    set_gain(context, name, parts, std::move(value));
+  } else if (parts[0] == "planners") {
+    core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
+    if (map != nullptr && parts.size() >= 3) put_or_replace(*map, parts.back(), std::move(value));
+    if (map != nullptr && parts.size() < 3) {
+      context.error(value.mark, "unknown-setting",
+                    fmt::format("--set {}: expected planners.NAME.KEY", name));
+    }
+  } else {
+    set_parameter(context, name, std::move(value));
+  }
+}
+
+}  // namespace
+
+void apply_overrides(LoadContext& context) {
+  for (const auto& [name, text] : context.options.set) apply(context, name, text);
+}
+
+}  // namespace footfall::behaviors

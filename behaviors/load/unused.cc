@@ -1,0 +1,47 @@
+// What is written down and never used, and what is missing beside it: warnings, once all is loaded.
+// Not said when there are errors, which may be the reason.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "behaviors/load/context.h"
+
+namespace footfall::behaviors {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void warn_stacks(LoadContext& context) {
+  const core::YamlNode* stacks = context.section("stacks");
+  if (stacks == nullptr || !core::expect_map(*stacks, "stacks by name", context.diagnostics)) {
+    return;
+  }
+  for (const core::YamlEntry& entry : stacks->entries) {
+    core::check_name(entry, context.diagnostics, "the name of a stack");
+    context.behavior.stacks.push_back(entry.key);
+    if (contains(context.used_stacks, entry.key)) continue;
+    context.absence(entry.key_mark, "unused",
+                    fmt::format("stack '{}' is never used, and not checked", entry.key));
+  }
+}
+
+// `mark: step` counts steps: a behavior that has none, but a mark that is nearly that, has a typo.
+void warn_marks(LoadContext& context) {
+  if (context.behavior.step >= 0) return;
+  for (const auto& [name, mark] : context.marks) {
+    if (core::did_you_mean(name, {"step"}).empty()) continue;
+    context.warning(mark, "near-step",
+                    fmt::format("only `mark: step` counts steps, '{}' does not", name));
+  }
+}
+
+}  // namespace
+
+void warn_absences(LoadContext& context) {
+  warn_stacks(context);
+  warn_marks(context);
+}
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,269 @@
+// Tasks in force and their references; see control_merge.h. Contact transitions:
+// contact_transition.cc.
+#include "behaviors/machine/control_merge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+
+namespace footfall::behaviors {
+namespace {
+
+// The most knots that the tasks of one control spec may need: the entry and the points of each
+// axis.
+std::size_t knot_capacity(const Behavior& behavior) {
+  std::size_t most = 0;
+  for (const ControlSpec& control : behavior.controls) {
+    std::size_t knots = 0;
+    for (int t = 0; t < control.tasks.count; ++t) {
+      const TaskSpec& task = behavior.tasks[at(control.tasks.first + t)];
+      const int points = task.reference.waypoints.count;
+      if (points > 0) knots += at(task.axes.count * (points + 1));
+    }
+    most = std::max(most, knots);
+  }
+  return most;
+}
+
+// The arrays have room for far more than a behavior asks for.
+void copy_in_force(const tasks::ControlSet& from, tasks::ControlSet& to) noexcept {
+  to.contact_count = from.contact_count;
+  to.task_count = from.task_count;
+  to.axis_count = from.axis_count;
+  to.internal_count = from.internal_count;
+  std::copy_n(from.contacts.begin(), from.contact_count, to.contacts.begin());
+  std::copy_n(from.tasks.begin(), from.task_count, to.tasks.begin());
+  std::copy_n(from.axes.begin(), from.axis_count, to.axes.begin());
+  std::copy_n(from.internals.begin(), from.internal_count, to.internals.begin());
+}
+
+void clear_fresh(tasks::ControlSet& set) noexcept {
+  for (int i = 0; i < set.task_count; ++i) set.tasks[at(i)].fresh = false;
+  for (int i = 0; i < set.axis_count; ++i) set.axes[at(i)].fresh = false;
+}
+
+}  // namespace
+
+ControlMerge::ControlMerge(const Behavior& behavior, Statechart& statechart)
+    : behavior_(behavior),
+      statechart_(statechart),
+      primary_(std::make_unique<Bank>()),
+      other_(std::make_unique<Bank>()),
+      old_primary_(std::make_unique<Bank>()),
+      old_other_(std::make_unique<Bank>()),
+      old_set_(std::make_unique<tasks::ControlSet>()),
+      old_other_set_(std::make_unique<tasks::ControlSet>()) {
+  const std::size_t knots = knot_capacity(behavior);
+  for (Bank* bank : {primary_.get(), other_.get(), old_primary_.get(), old_other_.get()}) {
+    bank->knots.resize(knots);
+  }
+}
+
+void ControlMerge::update(const Measure& measure, bool moved) noexcept {
+  control_.transition_entered = false;
+  clear_fresh(control_.primary);
+  clear_fresh(control_.other);
+  if (moved && changed()) rebuild(measure);
+  advance(*primary_, control_.primary, measure);
+  if (control_.has_other) advance(*other_, control_.other, measure);
+  weigh_transition();
+}
+
+// The merged control is that of another configuration, or a state that says where a reference
+// starts or a contact transition begins was entered again.
+bool ControlMerge::changed() const noexcept {
+  if (taken_over_) return true;
+  const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
+  if (primary_->spec != &spec) return true;
+  for (int k = 0; k < primary_->task_count; ++k) {
+    const TaskState& task = primary_->tasks[at(k)];
+    if (task.owner_serial != statechart_.entry_serial(task.spec->reference.owner)) return true;
+  }
+  return spec.transition >= 0 && !transition_goes_on(spec);
+}
+
+void ControlMerge::rebuild(const Measure& measure) noexcept {
+  taken_over_ = false;
+  const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
+  other_first_ = control_.has_other && control_.other_weight > 0.5 && !transition_goes_on(spec);
+  old_has_other_ = control_.has_other;
+  std::swap(primary_, old_primary_);
+  std::swap(other_, old_other_);
+  copy_in_force(control_.primary, *old_set_);
+  if (old_has_other_) copy_in_force(control_.other, *old_other_set_);
+  fill(*primary_, control_.primary, spec, measure);
+  update_transition(spec, measure);
+}
+
+// The task as it was in force before (axis < 0), or one of its axes: in the set with the greater
+// weight first.
+ControlMerge::Kept ControlMerge::find_kept(int instance, int axis) const noexcept {
+  for (const bool other : {other_first_, !other_first_}) {
+    if (other && !old_has_other_) continue;
+    const Bank& bank = other ? *old_other_ : *old_primary_;
+    const tasks::ControlSet& set = other ? *old_other_set_ : *old_set_;
+    if (bank.spec == nullptr) continue;
+    for (int k = 0; k < bank.task_count; ++k) {
+      const tasks::TaskCommand& task = set.tasks[at(k)];
+      if (task.instance != instance) continue;
+      if (axis < 0) return {&bank, &set, k, -1};
+      for (int slot = task.first_axis; slot < task.first_axis + task.axis_count; ++slot) {
+        if (set.axes[at(slot)].axis == axis) return {&bank, &set, k, slot};
+      }
+    }
+  }
+  return {};
+}
+
+void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec,
+                        const Measure& measure) noexcept {
+  bank.spec = &spec;
+  bank.frozen = false;
+  bank.reported = false;
+  bank.task_count = spec.tasks.count;
+  bank.knot_count = 0;
+  set.contact_count = static_cast<int>(spec.contacts.size());
+  std::copy(spec.contacts.begin(), spec.contacts.end(), set.contacts.begin());
+  set.task_count = spec.tasks.count;
+  set.axis_count = 0;
+  for (int k = 0; k < spec.tasks.count; ++k) {
+    fill_task(bank, set, behavior_.tasks[at(spec.tasks.first + k)], k, measure);
+  }
+  set.internal_count = spec.internals.count;
+  for (int k = 0; k < spec.internals.count; ++k) {
+    const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
+    set.internals[at(k)] = {internal.instance, internal.contact_a, internal.contact_b, 0.0, 0.0,
+                            internal.scale};
+  }
+}
+
+void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index,
+                             const Measure& measure) noexcept {
+  bank.tasks[at(index)] = {&spec, statechart_.entry_serial(spec.reference.owner)};
+  tasks::TaskCommand& command = set.tasks[at(index)];
+  command = {};
+  command.instance = spec.instance;
+  command.type = spec.type;
+  command.point = spec.point;
+  command.frame = spec.frame;
+  command.priority = spec.priority;
+  command.first_axis = set.axis_count;
+  command.axis_count = spec.axes.count;
+  command.fresh = find_kept(spec.instance, -1).task < 0;
+  set.axis_count += spec.axes.count;
+  for (int k = 0; k < spec.axes.count; ++k) {
+    const int axis = behavior_.axes[at(spec.axes.first + k)].axis;
+    const Kept kept = find_kept(spec.instance, axis);
+    tasks::AxisCommand& out = set.axes[at(command.first_axis + k)];
+    out = kept.slot < 0 ? tasks::AxisCommand{} : kept.set->axes[at(kept.slot)];
+    out.axis = axis;
+    out.slope = 0.0;
+    out.fresh = kept.slot < 0;
+    fill_axis(bank, set, command, spec, k, kept, measure);
+  }
+  for (int k = 0; k < spec.axes.count; ++k) {  // when `entry` is known of all axes
+    if (bank.axes[at(command.first_axis + k)].begins) start_axis(bank, command, spec, k, measure);
+  }
+}
+
+// The reference goes on if it is the same words in the same stay in their state, whatever else of
+// the task has changed; else it starts from what was the reference, or from what is measured.
+void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
+                             const tasks::TaskCommand& command, const TaskSpec& spec, int k,
+                             const Kept& kept, const Measure& measure) noexcept {
+  const int axis = behavior_.axes[at(spec.axes.first + k)].axis;
+  const int slot = command.first_axis + k;
+  AxisState& state = bank.axes[at(slot)];
+  state = {};
+  state.begins = true;
+  if (kept.slot < 0) {
+    state.motion.pos = measured(measure, spec, set, axis);
+  } else {
+    const TaskState& before = kept.bank->tasks[at(kept.task)];
+    const AxisState& old = kept.bank->axes[at(kept.slot)];
+    if (before.spec->reference.source == spec.reference.source &&
+        before.owner_serial == statechart_.entry_serial(spec.reference.owner)) {
+      state = old;
+      bank.entry[at(slot)] = kept.bank->entry[at(kept.slot)];
+      state.begins = false;
+      state.first_knot = bank.knot_count;
+      std::copy_n(kept.bank->knots.begin() + old.first_knot, old.knot_count,
+                  bank.knots.begin() + state.first_knot);
+      bank.knot_count += state.knot_count;
+      return;
+    }
+    state.motion = old.motion;
+    // The same place seen from another origin: `frame` or the stance contacts may have changed.
+    if (spec.frame == tasks::Frame::stance || before.spec->frame != spec.frame) {
+      state.motion.pos +=
+          measured(measure, spec, set, axis) - measured(measure, *before.spec, *kept.set, axis);
+    }
+  }
+  bank.entry[at(slot)] = state.motion.pos;
+}
+
+void ControlMerge::advance(Bank& bank, tasks::ControlSet& set, const Measure& measure) noexcept {
+  for (int k = 0; k < bank.task_count; ++k) advance_task(bank, set, k, measure);
+  const ControlSpec& spec = *bank.spec;
+  for (int k = 0; k < spec.internals.count; ++k) {
+    const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
+    tasks::InternalCommand& command = set.internals[at(k)];
+    command.reference =
+        internal.scale *
+        value_or(internal.reference, command.reference / internal.scale, bank, nullptr);
+    command.feedback = value_or(internal.feedback, command.feedback, bank, nullptr);
+  }
+}
+
+void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index,
+                                const Measure& measure) noexcept {
+  const TaskSpec& spec = *bank.tasks[at(index)].spec;
+  const tasks::TaskCommand& command = set.tasks[at(index)];
+  const double* entry = &bank.entry[at(command.first_axis)];
+  if (spec.reference.retarget > 0.0 && !bank.frozen) retarget(bank, spec, command);
+  for (int k = 0; k < spec.axes.count; ++k) {
+    const AxisSpec& axis = behavior_.axes[at(spec.axes.first + k)];
+    tasks::AxisCommand& out = set.axes[at(command.first_axis + k)];
+    out.kp = checked_gain(axis, axis.kp, 0, out.kp, bank, entry);
+    out.ki = checked_gain(axis, axis.ki, 1, out.ki, bank, entry);
+    out.kd = checked_gain(axis, axis.kd, 2, out.kd, bank, entry);
+    const tasks::AxisCommand usual;
+    out.weight = axis.weight < 0 ? usual.weight : value_or(axis.weight, out.weight, bank, entry);
+    out.acceleration_limit =
+        axis.acceleration_limit < 0
+            ? usual.acceleration_limit
+            : value_or(axis.acceleration_limit, out.acceleration_limit, bank, entry);
+    out.integral_limit = axis.integral_limit < 0
+                             ? usual.integral_limit
+                             : value_or(axis.integral_limit, out.integral_limit, bank, entry);
+    advance_axis(bank, command, spec, k, measure, out);
+  }
+}
+
+// A slot's value, or an expression's, which must stay within gains.ranges: else as it was before.
+double ControlMerge::checked_gain(const AxisSpec& axis, int slot, std::size_t gain, double before,
+                                  Bank& bank, const double* entry) noexcept {
+  if (slot >= 0) return statechart_.context().parameters[slot];
+  if (axis.computed[gain] < 0) return 0.0;
+  const double value = value_or(axis.computed[gain], before, bank, entry);
+  const std::array<double, 2>& limits = behavior_.gain_limits[gain];
+  if (value >= limits[0] && value <= limits[1]) return value;
+  if (!bank.reported) statechart_.report_execution_error();
+  bank.reported = true;
+  return std::clamp(before, limits[0], limits[1]);
+}
+
+double ControlMerge::value_or(int expression, double fallback, Bank& bank,
+                              const double* entry) noexcept {
+  if (expression < 0) return fallback;
+  EvaluationContext context = statechart_.context();
+  context.entry = entry;
+  const double value = evaluate(behavior_.expressions, expression, context);
+  if (std::isfinite(value)) return value;
+  if (!bank.reported) statechart_.report_execution_error();
+  bank.reported = true;
+  return fallback;
+}
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,125 @@
+// The control that the active configuration asks for: contacts, tasks with references and gains,
+// internal forces, and the other control law while a contact transition is under way. Rebuilt when
+// states that control change or are entered again, evaluated in every tick; allocates nothing after
+// construction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "behaviors/compiled/behavior.h"
+#include "behaviors/machine/machine.h"
+#include "behaviors/statechart/statechart.h"
+#include "model/height_surface.h"
+
+namespace footfall::behaviors {
+
+struct TakeOverMap;
+
+class ControlMerge {
+ public:
+  ControlMerge(const Behavior& behavior, Statechart& statechart);
+
+  // After the statechart's tick; `moved`: a transition was taken (or this is the first tick).
+  void update(const Measure& measure, bool moved) noexcept;
+  const tasks::ActiveControl& control() const noexcept { return control_; }
+  // Goes on from the control of another behavior (control_take_over.cc), after the statechart did.
+  // same_configuration: that is the old one's; else what is in force starts anew.
+  void take_over(const ControlMerge& old, const TakeOverMap& map, bool same_configuration) noexcept;
+  // The world's, flat unless set; before the first update.
+  void set_surface(const model::HeightSurface& surface) { surface_ = surface; }
+
+ private:
+  // One task in force: whose reference it follows since when.
+  struct TaskState {
+    const TaskSpec* spec = nullptr;
+    std::uint32_t owner_serial = 0;
+  };
+  struct AxisState {
+    Segment segment;
+    std::int64_t start_tick = 0;         // of the segment; later than the task's after a new `to`
+    double over = 0.0;                   // s, of the whole trajectory
+    Motion motion;                       // the reference in force
+    bool begins = false;                 // its reference starts in this tick
+    int first_knot = 0, knot_count = 0;  // waypoints: into Bank::knots
+    double angle = 0.0, rate = 0.0;      // ellipse: rad since entry, rad/s
+    double ramp = 0.0;                   // ellipse: s
+    std::int64_t last_tick = 0;          // ellipse: of the angle
+  };
+  // One set of tasks in force, with the same numbering as its tasks::ControlSet.
+  struct Bank {
+    const ControlSpec* spec = nullptr;
+    bool frozen = false;    // references stay as they are
+    bool reported = false;  // a value that is not finite was reported
+    int task_count = 0;
+    std::array<TaskState, core::kMaxTasks> tasks{};
+    std::array<AxisState, core::kMaxAxes> axes{};
+    std::array<double, core::kMaxAxes> entry{};  // what each reference started from
+    std::vector<Knot> knots;                     // sized at load
+    int knot_count = 0;
+  };
+  // A task, or one of its axes (slot), as it was in force before.
+  struct Kept {
+    const Bank* bank = nullptr;
+    const tasks::ControlSet* set = nullptr;
+    int task = -1;
+    int slot = -1;
+  };
+
+  // Whether the transitions of this tick can have changed anything that is merged: else rebuild()
+  // would find everything as it is.
+  bool changed() const noexcept;
+  void rebuild(const Measure& measure) noexcept;
+  // The contact transition under way is still the one that is asked for.
+  bool transition_goes_on(const ControlSpec& spec) const noexcept;
+  const TaskSpec* successor(const TaskSpec& old, const ControlSpec& spec,
+                            const TakeOverMap& map) const noexcept;
+  bool take_bank(Bank& bank, tasks::ControlSet& set, const ControlMerge& from, const Bank& old,
+                 const ControlSpec& spec, const TakeOverMap& map) noexcept;
+  void update_transition(const ControlSpec& spec, const Measure& measure) noexcept;
+  void begin_transition(const TransitionSpec& transition, const Measure& measure) noexcept;
+  void fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec,
+            const Measure& measure) noexcept;
+  void fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index,
+                 const Measure& measure) noexcept;
+  void fill_axis(Bank& bank, const tasks::ControlSet& set, const tasks::TaskCommand& command,
+                 const TaskSpec& spec, int k, const Kept& kept, const Measure& measure) noexcept;
+  Kept find_kept(int instance, int axis) const noexcept;
+  void advance(Bank& bank, tasks::ControlSet& set, const Measure& measure) noexcept;
+  void advance_task(Bank& bank, tasks::ControlSet& set, int index, const Measure& measure) noexcept;
+  // References (reference.cc). `k`: which axis of the task.
+  double measured(const Measure& measure, const TaskSpec& spec, const tasks::ControlSet& set,
+                  int axis) const noexcept;
+  void start_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
+                  const Measure& measure) noexcept;
+  void start_waypoints(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
+                       double over) noexcept;
+  void advance_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
+                    const Measure& measure, tasks::AxisCommand& out) noexcept;
+  Motion sample_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
+                     const Measure& measure, tasks::AxisCommand& out) noexcept;
+  double checked_gain(const AxisSpec& axis, int slot, std::size_t gain, double before, Bank& bank,
+                      const double* entry) noexcept;
+  void retarget(Bank& bank, const TaskSpec& spec, const tasks::TaskCommand& command) noexcept;
+  void weigh_transition() noexcept;
+  double value_or(int expression, double fallback, Bank& bank, const double* entry) noexcept;
+
+  const Behavior& behavior_;
+  Statechart& statechart_;
+  std::unique_ptr<Bank> primary_, other_, old_primary_, old_other_;
+  std::unique_ptr<tasks::ControlSet> old_set_, old_other_set_;
+  tasks::ActiveControl control_;
+  model::HeightSurface surface_;
+  bool old_has_other_ = false;
+  bool taken_over_ = false;   // what is in force is still laid out as in another behavior
+  bool stays_ = false;        // of a take-over: the configuration is the same
+  bool other_first_ = false;  // the other law has the greater weight: what it holds is kept
+  int transition_ = -1;       // into Behavior::contact_transitions
+  std::uint32_t transition_serial_ = 0;
+  std::int64_t transition_periods_ = 0;
+};
+
+}  // namespace footfall::behaviors

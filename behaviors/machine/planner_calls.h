@@ -1,0 +1,87 @@
+// The active states' `invoke`s at run time: when a planner is asked, what its answers write, what
+// happens when they are late. Allocates nothing after construction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "behaviors/compiled/behavior.h"
+#include "behaviors/machine/machine.h"
+#include "behaviors/statechart/statechart.h"
+
+namespace footfall::behaviors {
+
+struct TakeOverMap;
+
+// The planner's settings in this tick: `kappa: $name` reads its parameter, live.
+FootPlannerSpec spec_in_force(const PlannerInfo& planner,
+                              std::span<const double> parameters) noexcept;
+
+class PlannerCalls {
+ public:
+  PlannerCalls(const Behavior& behavior, Statechart& statechart, core::SignalTable& signals,
+               std::span<const double> parameters);
+
+  // Remembers on which side of each other the feet are (the signals hold the first measurement).
+  void start() noexcept;
+  // After the statechart's tick: exits cancel, deadlines pass, planners are asked.
+  void update() noexcept;
+  // Writes the answer's signals; false: it was cancelled, late, or never asked for.
+  bool deliver(const PlanAnswer& answer) noexcept;
+
+  // Goes on asking as the calls of another behavior did; what they wait for is not waited for here.
+  void take_over(const PlannerCalls& old, const TakeOverMap& map) noexcept;
+
+  std::span<const PlanRequest> requests() const noexcept { return requests_; }
+  // Events for the next tick's external queue; the caller clears them.
+  std::vector<int>& events() noexcept { return events_; }
+
+ private:
+  struct Outstanding {
+    std::uint32_t sequence = 0;
+    std::int64_t deadline = -1;  // tick, -1: none
+    double switch_time = 0.0;    // s since start
+  };
+  struct Call {
+    bool active = false;
+    std::uint32_t serial = 0;    // of the state's entry
+    std::int64_t next_ask = -1;  // tick, -1: not any more
+    // Requests without an answer yet, oldest first, in a ring: room for one a tick for a second, so
+    // that an answer always finds its request however late it is.
+    int first = 0;
+    int count = 0;
+    std::vector<Outstanding> ring;
+
+    Outstanding& nth(int k) noexcept {
+      return ring[static_cast<std::size_t>(first + k) % ring.size()];
+    }
+    void drop(int oldest) noexcept {
+      first = static_cast<int>(static_cast<std::size_t>(first + oldest) % ring.size());
+      count -= oldest;
+    }
+  };
+
+  void update_call(const InvokeInfo& invoke, Call& call) noexcept;
+  void leave(const InvokeInfo& invoke, Call& call) noexcept;
+  void ask(const InvokeInfo& invoke, Call& call) noexcept;
+  void replace_late(const InvokeInfo& invoke, const Outstanding& request) noexcept;
+  void write(int planner, const PlanAnswer& answer, double switch_time, bool late) noexcept;
+  void emit(int event) noexcept;
+  // Ticks that a time lasts; -1 and error.execution if it is no valid time.
+  std::int64_t ticks_of(int expression, double factor) noexcept;
+
+  const Behavior& behavior_;
+  Statechart& statechart_;
+  core::SignalTable& signals_;
+  std::span<const double> parameters_;
+  std::vector<Call> calls_;  // by Behavior::invokes
+  std::vector<PlanRequest> requests_;
+  std::vector<int> events_;
+  std::array<double, core::kMaxContacts>
+      lateral_{};  // m, of each contact at the start, to the left
+  std::uint32_t sequence_ = 0;
+};
+
+}  // namespace footfall::behaviors

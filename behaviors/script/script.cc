@@ -1,0 +1,185 @@
+// Lua's state, its limits and its calls; see script.h. Debian's C++ build of Lua raises its errors
+// as exceptions, so C++ objects on the way are destroyed.
+#include "behaviors/script/script.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <lua.hpp>
+#include <new>
+
+#include "behaviors/compiled/chart.h"
+#include "behaviors/script/state.h"
+
+namespace footfall::behaviors {
+namespace {
+
+constexpr int kHookInterval = 1000;  // instructions between two looks at the budget
+const char kStateKey = 0;            // its address is the registry key
+
+// Lua's allocator with a ceiling.
+void* allocate(void* user, void* old, std::size_t old_size, std::size_t size) {
+  auto& state = *static_cast<ScriptState*>(user);
+  const std::size_t held = old == nullptr ? 0 : old_size;
+  if (size == 0) {
+    std::free(old);
+    state.memory_used -= held;
+    return nullptr;
+  }
+  if (size > held && state.memory_used - held + size > state.settings.memory) return nullptr;
+  void* block = std::realloc(old, size);
+  if (block != nullptr) state.memory_used += size - held;
+  return block;
+}
+
+// Once the budget is spent every instruction fails, so that a script's own pcall cannot go on.
+void count_instructions(lua_State* lua, lua_Debug*) {
+  ScriptState& state = state_of(lua);
+  state.instructions_left -= kHookInterval;
+  if (state.instructions_left > 0) return;
+  state.instructions_left = 0;
+  lua_sethook(lua, count_instructions, LUA_MASKCOUNT, 1);
+  luaL_error(lua, "stopped: it ran longer than its instructions allow");
+}
+
+// `script:12: text` of Lua's message.
+ScriptError split_message(const char* message) {
+  ScriptError error{0, message == nullptr ? "unknown error" : message};
+  constexpr std::string_view kName = "script:";
+  if (!error.text.starts_with(kName)) return error;
+  char* end = nullptr;
+  error.line = static_cast<int>(std::strtol(error.text.c_str() + kName.size(), &end, 10));
+  const auto skip = static_cast<std::size_t>(end - error.text.c_str());
+  error.text.erase(0, std::min(error.text.size(), skip + 2));
+  return error;
+}
+
+// Runs the function on top of the stack with `arguments` arguments under a new budget.
+bool run_protected(ScriptState& state, int arguments, ScriptError& error) {
+  state.instructions_left = state.settings.instructions;
+  lua_sethook(state.lua, count_instructions, LUA_MASKCOUNT, kHookInterval);
+  const int result = lua_pcall(state.lua, arguments, 0, 0);
+  lua_sethook(state.lua, nullptr, 0, 0);
+  if (result == LUA_OK) return true;
+  error = split_message(lua_tostring(state.lua, -1));
+  if (result == LUA_ERRMEM) error.text = "stopped: it needs more memory than a script may have";
+  lua_settop(state.lua, 0);
+  return false;
+}
+
+int open_protected(lua_State* lua) {
+  open_libraries(lua, state_of(lua).settings);
+  open_footfall(lua);
+  return 0;
+}
+
+// The names that exist before any file is loaded.
+int list_globals(lua_State* lua, std::vector<std::string>& names, bool functions_only) {
+  lua_pushglobaltable(lua);
+  lua_pushnil(lua);
+  while (lua_next(lua, -2) != 0) {
+    const bool wanted = !functions_only || lua_isfunction(lua, -1);
+    if (wanted && lua_type(lua, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(lua, -2));
+    lua_pop(lua, 1);
+  }
+  lua_pop(lua, 1);
+  std::sort(names.begin(), names.end());
+  return static_cast<int>(names.size());
+}
+
+}  // namespace
+
+struct Script::Impl {
+  ScriptState state;
+  std::vector<std::string> built_in;
+
+  // A call's answer counts only if the call ends well.
+  bool finish(bool good, const ScriptError& error, ScriptAnswer& out, ScriptAnswer& answer) {
+    state.view = nullptr;
+    state.answer = nullptr;
+    out.messages.insert(out.messages.end(), answer.messages.begin(), answer.messages.end());
+    if (good) {
+      out.events.insert(out.events.end(), answer.events.begin(), answer.events.end());
+      out.edits.insert(out.edits.end(), answer.edits.begin(), answer.edits.end());
+    } else {
+      const std::string line = error.line > 0 ? "line " + std::to_string(error.line) + ": " : "";
+      out.messages.push_back("script error: " + line + error.text);
+    }
+    return good;
+  }
+};
+
+ScriptState& state_of(lua_State* lua) {
+  lua_rawgetp(lua, LUA_REGISTRYINDEX, &kStateKey);
+  auto* state = static_cast<ScriptState*>(lua_touserdata(lua, -1));
+  lua_pop(lua, 1);
+  return *state;
+}
+
+Script::Script(const ScriptSettings& settings) : impl_(std::make_unique<Impl>()) {
+  ScriptState& state = impl_->state;
+  state.settings = settings;
+  state.lua = lua_newstate(allocate, &state);
+  if (state.lua == nullptr) throw std::bad_alloc();
+  lua_pushlightuserdata(state.lua, &state);
+  lua_rawsetp(state.lua, LUA_REGISTRYINDEX, &kStateKey);
+  lua_pushcfunction(state.lua, open_protected);
+  if (lua_pcall(state.lua, 0, 0, 0) != LUA_OK) {
+    lua_close(state.lua);
+    throw std::bad_alloc();
+  }
+  list_globals(state.lua, impl_->built_in, false);
+}
+
+Script::~Script() { lua_close(impl_->state.lua); }
+
+bool Script::load(const std::string& text, ScriptError& error) {
+  lua_State* lua = impl_->state.lua;
+  // "t": text only; a file of byte code could break the machine.
+  if (luaL_loadbufferx(lua, text.data(), text.size(), "=script", "t") != LUA_OK) {
+    error = split_message(lua_tostring(lua, -1));
+    lua_settop(lua, 0);
+    return false;
+  }
+  return run_protected(impl_->state, 0, error);
+}
+
+std::vector<std::string> Script::functions() const {
+  std::vector<std::string> names, own;
+  list_globals(impl_->state.lua, names, true);
+  const auto& known = impl_->built_in;
+  std::set_difference(names.begin(), names.end(), known.begin(), known.end(),
+                      std::back_inserter(own));
+  return own;
+}
+
+const std::vector<std::string>& Script::patterns() const { return impl_->state.patterns; }
+
+bool Script::call(const std::string& function, const ScriptView& view, ScriptAnswer& out) {
+  ScriptState& state = impl_->state;
+  ScriptAnswer answer;
+  state.view = &view;
+  state.answer = &answer;
+  ScriptError error;
+  lua_getglobal(state.lua, function.c_str());
+  const bool good = run_protected(state, 0, error);
+  return impl_->finish(good, error, out, answer);
+}
+
+bool Script::handle(std::string_view event, const ScriptView& view, ScriptAnswer& out) {
+  ScriptState& state = impl_->state;
+  bool all = true;
+  for (std::size_t k = 0; k < state.handlers.size(); ++k) {
+    if (!Chart::event_matches(state.patterns[k], event)) continue;
+    ScriptAnswer answer;
+    state.view = &view;
+    state.answer = &answer;
+    ScriptError error;
+    lua_rawgeti(state.lua, LUA_REGISTRYINDEX, state.handlers[k]);
+    lua_pushlstring(state.lua, event.data(), event.size());
+    const bool good = run_protected(state, 1, error);
+    all = impl_->finish(good, error, out, answer) && all;
+  }
+  return all;
+}
+
+}  // namespace footfall::behaviors

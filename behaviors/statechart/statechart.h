@@ -1,0 +1,177 @@
+// The statechart at run time: pure W3C SCXML 1.0 semantics (section 3.13 and Appendix D) on the
+// flat arrays of a Chart. It knows ticks, signals and parameters, but nothing of robots or control.
+// Everything is allocated by the constructor; all else is noexcept and allocation-free.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "behaviors/compiled/chart.h"
+#include "behaviors/statechart/index.h"
+#include "core/fault.h"
+
+namespace footfall::behaviors {
+
+struct TakeOverMap;
+
+// One executed `log:` action.
+struct LogRecord {
+  int text = 0;  // index into Chart::logs
+  std::array<double, kMaxLogValues> values{};
+};
+
+// First in, first out, with a fixed capacity.
+class EventQueue {
+ public:
+  explicit EventQueue(int capacity) : items_(static_cast<std::size_t>(capacity)) {}
+  bool empty() const noexcept { return count_ == 0; }
+  std::size_t room() const noexcept { return items_.size() - static_cast<std::size_t>(count_); }
+  bool push(int event) noexcept;
+  void clear() noexcept { count_ = 0; }
+  // What waits in another queue, as `events` names it here (-1: drops it).
+  void take_over(const EventQueue& old, const std::vector<int>& events) noexcept;
+  int front() const noexcept { return items_[static_cast<std::size_t>(first_)]; }
+  int pop() noexcept;
+  int size() const noexcept { return count_; }
+  int at(int i) const noexcept {  // the i-th from the front
+    return items_[static_cast<std::size_t>(first_ + i) % items_.size()];
+  }
+
+ private:
+  std::vector<int> items_;
+  int first_ = 0;
+  int count_ = 0;
+};
+
+class Statechart {
+ public:
+  // `signals` and `parameters` are read at every tick; actions write parameters. All must outlive
+  // it.
+  Statechart(const Chart& chart, const double* signals, std::span<double> parameters);
+
+  // Enters the initial configuration; event-less transitions wait for the first tick.
+  void start(std::int64_t tick) noexcept;
+  // Forgets what the last tick recorded; call before this tick's raise().
+  void begin_tick(std::int64_t tick) noexcept;
+  // Appends to the external queue; false: full (counted, and fault.event.overflow is raised).
+  bool raise(int event) noexcept;
+  // The safe state is entered ahead of this tick's transitions (rule 10).
+  void request_safe() noexcept { safe_requested_ = true; }
+  // One tick: event-less transitions, internal events, external events until all queues are empty.
+  void run() noexcept;
+
+  // Whether the configuration of a chart whose place this one takes is one of this chart.
+  bool has_configuration_of(const Statechart& old, const TakeOverMap& map) const noexcept;
+  // Goes on from the old chart's configuration, clocks, histories and events (no actions are run);
+  // if that is none of this chart's, from its own last one, with new clocks. Between two ticks.
+  void take_over(const Statechart& old, const TakeOverMap& map) noexcept;
+
+  std::span<const int> active_states() const noexcept { return active_list_; }
+  std::span<const int> active_atomic() const noexcept { return atomic_list_; }
+  bool is_active(int state) const noexcept { return active_[idx(state)] != 0; }
+  std::int64_t entry_tick(int state) const noexcept { return entry_ticks_[idx(state)]; }
+  // Grows with each entry of the state; tells a re-entry from staying.
+  std::uint32_t entry_serial(int state) const noexcept { return entry_serials_[idx(state)]; }
+  // Sum of control weights of the configuration from which `state` was entered last.
+  int control_before(int state) const noexcept { return control_before_[idx(state)]; }
+  int control() const noexcept { return control_; }
+  bool finished() const noexcept { return finished_; }
+  std::span<const int> marks() const noexcept { return marks_; }
+  std::span<const int> transitions_taken() const noexcept { return taken_; }
+  // Events that came to their turn in this tick, in order; those that enabled nothing, too.
+  std::span<const int> events_taken() const noexcept { return events_; }
+  // The tick at which a transition's `after` holds, -1 if it has none in force.
+  std::int64_t deadline(int transition) const noexcept {
+    return timer_taken_[idx(transition)] != 0 ? -1 : deadlines_[idx(transition)];
+  }
+  // What a transition's guard has given so far: bit 0 false, bit 1 true.
+  std::uint8_t guard_outcomes(int transition) const noexcept {
+    return guard_outcomes_[idx(transition)];
+  }
+  std::span<const LogRecord> logs() const noexcept { return logs_; }
+  // What this tick asks of the scripts, in order.
+  std::span<const ScriptRequest> script_requests() const noexcept { return script_requests_; }
+  const core::FaultCounters& faults() const noexcept { return faults_; }
+  void count_fault(core::Fault fault) noexcept { faults_.add(fault); }
+  // error.execution, as an internal event of the next tick.
+  void report_execution_error() noexcept { execution_error(); }
+  const EvaluationContext& context() const noexcept { return context_; }
+
+ private:
+  static std::size_t idx(int i) noexcept { return static_cast<std::size_t>(i); }
+  const StateInfo& state(int s) const noexcept { return chart_.states[idx(s)]; }
+
+  // Selection (select.cc).
+  void select(int event) noexcept;  // -1: event-less
+  void consider(int s, int event) noexcept;
+  bool enabled(const Trigger& trigger, int event) const noexcept;
+  int domain(int transition) const noexcept;
+  void remove_conflicting() noexcept;
+  int effective_targets(const TransitionInfo& transition, int* out) const noexcept;
+
+  // Execution (statechart.cc).
+  void micro_step() noexcept;
+  void mark_exits(int domain) noexcept;
+  void exit_states() noexcept;
+  void record_history(int history) noexcept;
+  void enter_states() noexcept;
+  void enter_state(int s) noexcept;
+  void after_final(int s) noexcept;
+  bool in_final(int s) const noexcept;
+  void refresh_lists() noexcept;
+  void run_actions(Range actions) noexcept;
+  bool run_action(const ActionInfo& action) noexcept;
+  bool call(int index) noexcept;
+  void take_event(EventQueue& queue) noexcept;
+  void raise_internal(int event) noexcept;
+  void execution_error() noexcept;
+
+  // In another chart's place (take_over.cc).
+  void take_configuration(const Statechart& old, const TakeOverMap& map) noexcept;
+  void enter_again(std::int64_t tick) noexcept;
+  void find_deadlines(int s, std::int64_t unknown) noexcept;
+  void take_histories(const Statechart& old, const TakeOverMap& map) noexcept;
+
+  // Entry sets, Appendix D (entry.cc).
+  void compute_entries(int transition) noexcept;
+  void add_descendants(int s) noexcept;
+  void add_ancestors(int s, int ancestor) noexcept;
+  void add_regions(int parallel) noexcept;
+  void add_targets(Range targets, int ancestor) noexcept;
+
+  const Chart& chart_;
+  const ChartIndex index_;
+  std::span<double> parameters_;
+  EvaluationContext context_;
+  std::vector<std::uint8_t> active_;  // by state
+  StateSet configuration_, entering_, leaving_;
+  std::vector<std::uint64_t> asked_;  // by state: the selection that asked it last
+  std::uint64_t selection_ = 0;
+  std::vector<std::int64_t> entry_ticks_;
+  std::vector<std::uint32_t> entry_serials_;
+  std::vector<int> control_before_;
+  std::vector<std::int64_t> deadlines_;    // by transition with `after`; tick at which it holds
+  std::vector<std::uint8_t> timer_taken_;  // by transition: event-less timer used up
+  std::vector<int> active_list_, atomic_list_;
+  std::vector<int> candidates_;      // enabled transitions, conflicts and all
+  std::vector<int> selected_;        // transitions of this micro step
+  std::vector<int> history_values_;  // by slot, states.size() each
+  std::vector<int> history_counts_;  // by slot, 0: never left
+  mutable std::vector<int> target_scratch_;
+  EventQueue internal_, external_;
+  std::vector<int> marks_, taken_, events_;
+  mutable std::vector<std::uint8_t> guard_outcomes_;  // by transition
+  std::vector<LogRecord> logs_;
+  std::vector<ScriptRequest> script_requests_;
+  core::FaultCounters faults_;
+  int control_ = 0;
+  int steps_ = 0;  // micro steps of this tick
+  bool finished_ = false;
+  bool safe_requested_ = false;
+  bool overflowed_ = false;
+  bool recorded_start_ = false;  // start()'s marks are still to be shown
+};
+
+}  // namespace footfall::behaviors
