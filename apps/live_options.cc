@@ -11,7 +11,7 @@
 
 #include "apps/commands.h"
 #include "core/units/units.h"
-#include "engine/lcm_link.h"
+#include "engine/lcm/link.h"
 
 namespace footfall::apps {
 namespace {

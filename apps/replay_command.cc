@@ -11,7 +11,7 @@
 
 #include "apps/commands.h"
 #include "apps/log_argument.h"
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "lab/log_diff.h"
 #include "lab/log_setup.h"
 #include "lab/reload.h"

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "apps/run_setup.h"
-#include "engine/file_watch.h"
+#include "engine/realtime/file_watch.h"
 #include "lab/reload.h"
 
 namespace footfall::apps {

@@ -9,9 +9,9 @@
 
 #include "apps/commands.h"
 #include "apps/run_options.h"
-#include "engine/control_loop.h"
-#include "engine/lcm_link.h"
-#include "engine/log_writer.h"
+#include "engine/lcm/link.h"
+#include "engine/log/writer.h"
+#include "engine/tick/control_loop.h"
 #include "lab/run.h"
 #include "lab/run_log.h"
 #include "lab/summary.h"

@@ -7,7 +7,7 @@
 
 #include "apps/tune_model.h"
 #include "apps/tune_options.h"
-#include "engine/live_client.h"
+#include "engine/lcm/client.h"
 
 namespace footfall::apps {
 

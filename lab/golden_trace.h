@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "lab/scenario_description.h"
 
 namespace footfall::lab {

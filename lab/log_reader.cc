@@ -1,4 +1,4 @@
-// Reader of logs; see log_reader.h. The coding of blocks is engine/column_codec.h's.
+// Reader of logs; see log_reader.h. The coding of blocks is engine/log/column_codec.h's.
 #include "lab/log_reader.h"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "core/index.h"
-#include "engine/column_codec.h"
-#include "engine/log_encoder.h"
+#include "engine/log/column_codec.h"
+#include "engine/log/encoder.h"
 #include "lab/mcap_reader.h"
 
 namespace footfall::lab {

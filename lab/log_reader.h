@@ -1,4 +1,4 @@
-// Reads the log of a run (engine/log_writer.h), whole or cut off at any byte: what was complete
+// Reads the log of a run (engine/log/writer.h), whole or cut off at any byte: what was complete
 // before the cut is there. After a run, for reports, comparisons, replay and tests.
 #pragma once
 

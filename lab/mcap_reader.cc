@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "engine/mcap_format.h"
+#include "engine/log/mcap_format.h"
 
 namespace footfall::lab {
 namespace {

@@ -11,8 +11,8 @@
 #include "behaviors/compiled/take_over_map.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/diagnostics.h"
-#include "engine/control_loop.h"
-#include "engine/log_writer.h"
+#include "engine/log/writer.h"
+#include "engine/tick/control_loop.h"
 #include "hal/hardware.h"
 #include "lab/run_log.h"
 

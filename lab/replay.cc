@@ -11,8 +11,8 @@
 
 #include "behaviors/compiled/take_over_map.h"
 #include "behaviors/loader.h"
-#include "engine/control_loop.h"
-#include "engine/tick_inputs.h"
+#include "engine/tick/control_loop.h"
+#include "engine/tick/inputs.h"
 #include "lab/log_folder.h"
 #include "lab/log_setup.h"
 

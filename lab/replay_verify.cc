@@ -7,8 +7,8 @@
 
 #include "behaviors/compiled/behavior.h"
 #include "core/index.h"
-#include "engine/control_loop.h"
-#include "engine/tick_inputs.h"
+#include "engine/tick/control_loop.h"
+#include "engine/tick/inputs.h"
 #include "lab/replay.h"
 
 namespace footfall::lab {

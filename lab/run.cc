@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/pacer.h"
+#include "engine/realtime/pacer.h"
 #include "lab/reload.h"
 #include "lab/run_log.h"
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/realtime/timing_histogram.h"
-#include "engine/control_loop.h"
-#include "engine/lcm_link.h"
-#include "engine/log_writer.h"
+#include "engine/lcm/link.h"
+#include "engine/log/writer.h"
+#include "engine/tick/control_loop.h"
 #include "lab/run_end.h"
 #include "lab/run_metrics.h"
 

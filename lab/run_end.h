@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "lab/step_counter.h"
 
 namespace footfall::lab {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/control_loop.h"
-#include "engine/log_writer.h"
+#include "engine/log/writer.h"
+#include "engine/tick/control_loop.h"
 #include "lab/step_counter.h"
 
 namespace footfall::lab {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "lab/run.h"
 #include "lab/run_log.h"
 #include "lab/scenario_description.h"

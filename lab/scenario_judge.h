@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "lab/run.h"
 #include "lab/scenario_description.h"
 #include "lab/scenario_result.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "behaviors/script/script.h"
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "lab/scenario_description.h"
 
 namespace footfall::lab {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "engine/edit_door.h"
+#include "engine/edits/door.h"
 #include "lab/scenario_context.h"
 #include "lab/scenario_keys.h"
 

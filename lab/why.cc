@@ -9,7 +9,7 @@
 
 #include "behaviors/explain/guard_terms.h"
 #include "core/index.h"
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 
 namespace footfall::lab {
 namespace {

@@ -14,8 +14,8 @@
 #include <random>
 #include <vector>
 
-#include "engine/live_server.h"
-#include "engine/live_snapshot.h"
+#include "engine/live/server.h"
+#include "engine/live/snapshot.h"
 #include "tests/bench/timing.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/rig.h"

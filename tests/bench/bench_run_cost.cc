@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "engine/log_writer.h"
+#include "engine/log/writer.h"
 #include "lab/run.h"
 #include "lab/run_log.h"
 #include "tests/support/rig.h"

@@ -1,5 +1,5 @@
 // Every bit comes back, whatever the columns hold; what is related costs little.
-#include "engine/column_codec.h"
+#include "engine/log/column_codec.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The tick over the stub backend and over MuJoCo: it runs, repeats bit for bit, allocates nothing.
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include <fstream>
 #include <set>
 
-#include "engine/log_writer.h"
+#include "engine/log/writer.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/fake_robot.h"
 #include "tests/support/rig.h"

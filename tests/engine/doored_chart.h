@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "behaviors/loader.h"
-#include "engine/edit_door.h"
+#include "engine/edits/door.h"
 #include "tests/support/no_measure.h"
 
 namespace footfall::tests {

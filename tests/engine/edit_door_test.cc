@@ -1,12 +1,11 @@
 // Live edits: checked whole, applied whole at the start of a tick, answered, ramped, and free of
 // allocations in the tick.
-#include "engine/edit_door.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <thread>
 
+#include "engine/edits/door.h"
 #include "tests/engine/doored_chart.h"
 #include "tests/support/allocation_guard.h"
 

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-#include "engine/edit_door.h"
+#include "engine/edits/door.h"
 #include "tests/engine/doored_chart.h"
 
 namespace footfall::tests {

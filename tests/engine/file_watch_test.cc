@@ -1,5 +1,5 @@
 // Changed files are told once they have settled; what only looks changed is not.
-#include "engine/file_watch.h"
+#include "engine/realtime/file_watch.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,12 +1,11 @@
 // Datagrams: what LCM sends is read, in one or in parts; whatever else comes is counted.
-#include "engine/lcm_datagram.h"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <random>
 
-#include "engine/lcm_bus.h"
+#include "engine/lcm/bus.h"
+#include "engine/lcm/datagram.h"
 #include "tests/support/live_packets.h"
 #include "tests/support/multicast.h"
 

@@ -1,7 +1,5 @@
 // An engine and its clients on the network of live tuning, each test on a port of its own that
 // leaves the host by no way. Skipped where LCM has no network.
-#include "engine/lcm_link.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,8 +9,9 @@
 #include <random>
 #include <thread>
 
-#include "engine/live_client.h"
-#include "engine/live_snapshot.h"
+#include "engine/lcm/client.h"
+#include "engine/lcm/link.h"
+#include "engine/live/snapshot.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/fake_robot.h"
 #include "tests/support/live_packets.h"

@@ -1,13 +1,12 @@
 // Packets: what is sent arrives as it was, what is damaged is refused or is well formed, and
 // nothing that announces much makes room for it.
-#include "engine/live_codec.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "engine/live/codec.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/live_packets.h"
 

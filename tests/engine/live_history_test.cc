@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "engine/live_clients.h"
+#include "engine/live/clients.h"
 #include "tests/engine/live_rig.h"
 
 namespace footfall::tests {

@@ -1,6 +1,4 @@
 // Key files: made whole, once, for their owner alone; refused with a reason else.
-#include "engine/live_key.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -11,6 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 #include <thread>
+
+#include "engine/live/key.h"
 
 namespace footfall::engine {
 namespace {

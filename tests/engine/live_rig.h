@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/live_server.h"
+#include "engine/live/server.h"
 #include "tests/engine/doored_chart.h"
 
 namespace footfall::tests {

@@ -1,7 +1,5 @@
 // Requests of people in, answers out: done once, whole or not at all, answered with every reason,
 // undone and done again; nothing of it needs a network.
-#include "engine/live_server.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +9,8 @@
 #include <footfall_lcm/values_t.hpp>
 #include <limits>
 
-#include "engine/live_clients.h"
+#include "engine/live/clients.h"
+#include "engine/live/server.h"
 #include "tests/engine/live_rig.h"
 
 namespace footfall::tests {

@@ -1,6 +1,4 @@
 // The log comes back as it was written, whole or cut at any byte, and twice the same.
-#include "engine/log_writer.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -11,9 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/log_schema.h"
-#include "engine/mcap_format.h"
-#include "engine/tick_inputs.h"
+#include "engine/log/mcap_format.h"
+#include "engine/log/schema.h"
+#include "engine/log/writer.h"
+#include "engine/tick/inputs.h"
 #include "lab/log_reader.h"
 #include "lab/mcap_reader.h"
 #include "tests/support/allocation_guard.h"

@@ -1,5 +1,5 @@
 // Pacing by absolute boundaries. Time is only bounded from below, and above by half a second.
-#include "engine/pacer.h"
+#include "engine/realtime/pacer.h"
 
 #include <gtest/gtest.h>
 

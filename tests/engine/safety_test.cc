@@ -1,5 +1,5 @@
 // The last word before the hardware.
-#include "engine/safety.h"
+#include "engine/tick/safety.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/fake_robot.h"
 #include "tests/support/rig.h"

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "engine/log_writer.h"
+#include "engine/log/writer.h"
 #include "lab/log_diff.h"
 #include "lab/run.h"
 #include "lab/run_log.h"

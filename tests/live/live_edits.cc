@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "engine/lcm_bus.h"
-#include "engine/live_codec.h"
+#include "engine/lcm/bus.h"
+#include "engine/live/codec.h"
 #include "tests/live/options.h"
 #include "tests/live/random_edits.h"
 

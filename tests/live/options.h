@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "engine/live_client.h"
+#include "engine/lcm/client.h"
 
 namespace footfall::tests {
 

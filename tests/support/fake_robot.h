@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "behaviors/loader.h"
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "hal/backends/stub.h"
 
 namespace footfall::tests {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "behaviors/loader.h"
-#include "engine/control_loop.h"
+#include "engine/tick/control_loop.h"
 #include "sim/mujoco_backend.h"
 #include "sim/world_description.h"
 

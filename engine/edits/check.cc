@@ -1,0 +1,136 @@
+// What speaks against a live edit, as texts for people; see door.h.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units/units.h"
+#include "engine/edits/door.h"
+
+namespace footfall::engine {
+namespace {
+
+using behaviors::Behavior;
+using behaviors::ParameterInfo;
+
+constexpr double kLongestRamp = 1e6;  // s
+
+bool may_write_all(EditSource source) {
+  return source == EditSource::set || source == EditSource::command;
+}
+
+std::string with_unit(double value, const ParameterInfo& info) {
+  const std::string unit = core::unit_text(info.dimension);
+  return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+// One value of a parameter: finite, in its range; a gain without a range is not negative.
+void check_value(const ParameterInfo& info, int component, double value,
+                 std::vector<std::string>& reasons) {
+  const std::string name = info.size == 1 ? info.name : fmt::format("{}[{}]", info.name, component);
+  if (!std::isfinite(value)) {
+    reasons.push_back(fmt::format("{}: {:g} is not a finite number", name, value));
+  } else if (info.has_range() && (value < info.min || value > info.max)) {
+    reasons.push_back(fmt::format("{}: {} is out of its range, {} to {}", name,
+                                  with_unit(value, info), with_unit(info.min, info),
+                                  with_unit(info.max, info)));
+  } else if (!info.has_range() && info.gain && value < 0.0) {
+    reasons.push_back(
+        fmt::format("{}: {} is negative: a gain is 0 or more", name, with_unit(value, info)));
+  }
+}
+
+void check_liveness(const ParameterInfo& info, EditSource source,
+                    std::vector<std::string>& reasons) {
+  if (info.live || may_write_all(source)) return;
+  reasons.push_back(info.variable ? info.name + ": not live, the behavior's actions set it"
+                                  : info.name + ": not live; give it a range and 'live: true'");
+}
+
+void check_edit(const Behavior& behavior, const EditValue& edit, EditSource source,
+                std::vector<int>& slots, std::vector<std::string>& reasons) {
+  const auto count = static_cast<int>(behavior.parameters.size());
+  if (edit.parameter < 0 || edit.parameter >= count) {
+    reasons.push_back(fmt::format("no parameter {}: the behavior has {}", edit.parameter, count));
+    return;
+  }
+  const ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(edit.parameter)];
+  check_liveness(info, source, reasons);
+  if (edit.component >= info.size || edit.component < -1) {
+    reasons.push_back(fmt::format("{}: no component {}, it has {} value{}", info.name,
+                                  edit.component, info.size, info.size == 1 ? "" : "s"));
+    return;
+  }
+  const int wanted = edit.component < 0 ? info.size : 1;
+  if (static_cast<int>(edit.values.size()) != wanted) {
+    reasons.push_back(fmt::format("{}: expected {} value{}, got {}", info.name, wanted,
+                                  wanted == 1 ? "" : "s", edit.values.size()));
+    return;
+  }
+  for (int k = 0; k < wanted; ++k) {
+    const int component = std::max(0, edit.component) + k;
+    check_value(info, component, edit.values[static_cast<std::size_t>(k)], reasons);
+    const int slot = info.slot + component;
+    if (std::ranges::find(slots, slot) != slots.end()) {
+      reasons.push_back(info.name + ": given twice");
+    }
+    slots.push_back(slot);
+  }
+}
+
+void check_events(const Behavior& behavior, const EditBatch& batch,
+                  std::vector<std::string>& reasons) {
+  if (batch.events.size() > kMaxEditEvents) {
+    reasons.push_back(
+        fmt::format("{} events: at most {} in one edit", batch.events.size(), kMaxEditEvents));
+  }
+  for (const int event : batch.events) {
+    if (event < 0 || event >= static_cast<int>(behavior.events.size())) {
+      reasons.push_back(
+          fmt::format("no event {}: the behavior has {}", event, behavior.events.size()));
+    } else if (is_built_in_event(behavior, event)) {
+      reasons.push_back(fmt::format("{}: raised by the engine only",
+                                    behavior.events[static_cast<std::size_t>(event)]));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> reasons_against(const Behavior& behavior, const EditBatch& batch,
+                                         std::uint64_t revision) {
+  std::vector<std::string> reasons;
+  std::vector<int> slots;
+  for (const EditValue& edit : batch.values) {
+    check_edit(behavior, edit, batch.source, slots, reasons);
+  }
+  check_events(behavior, batch, reasons);
+  if (batch.values.empty() && batch.events.empty()) {
+    reasons.emplace_back("nothing is changed or raised");
+  }
+  if (!(batch.over >= 0.0 && batch.over <= kLongestRamp)) {
+    reasons.push_back(
+        fmt::format("over: {:g} s is out of its range, 0 s to {:g} s", batch.over, kLongestRamp));
+  }
+  if (batch.revision && *batch.revision != revision) {
+    reasons.push_back(fmt::format("revision {} was expected, {} is in force: read it again",
+                                  *batch.revision, revision));
+  }
+  return reasons;
+}
+
+bool is_built_in_event(const Behavior& behavior, int event) {
+  const auto in = [event](const std::vector<int>& events) {
+    return std::ranges::find(events, event) != events.end();
+  };
+  const bool done = std::ranges::any_of(
+      behavior.states, [event](const auto& state) { return state.done_event == event; });
+  const bool planner = std::ranges::any_of(behavior.planners, [event](const auto& info) {
+    return event == info.done_event || event == info.late_event || event == info.failed_event;
+  });
+  return done || planner || event == behavior.error_execution || event == behavior.event_overflow ||
+         in(behavior.touchdown_events) || in(behavior.liftoff_events) ||
+         in(behavior.fault_events) || in(behavior.changed_events);
+}
+
+}  // namespace footfall::engine

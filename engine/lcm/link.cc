@@ -1,0 +1,257 @@
+// The link's thread; see link.h.
+#include "engine/lcm/link.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <footfall_lcm/answer_t.hpp>
+#include <footfall_lcm/catalogue_t.hpp>
+#include <footfall_lcm/hello_t.hpp>
+#include <footfall_lcm/request_t.hpp>
+#include <footfall_lcm/telemetry_t.hpp>
+#include <footfall_lcm/values_t.hpp>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <utility>
+
+#include "engine/live/snapshot.h"
+#include "engine/tick/control_loop.h"
+
+namespace footfall::engine {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr std::size_t kEntrance = 1;  // of the door
+// How often at most, and values at least.
+constexpr milliseconds kCatalogueApart{100}, kValuesApart{20}, kMovingApart{100}, kValuesPause{500};
+// Of waiting for packets: while an edit is on its way through the tick, else.
+constexpr int kBusyWait = 1, kIdleWait = 5;  // ms
+
+std::int64_t random_number() {
+  if (sodium_init() < 0) throw std::runtime_error("this machine gives no random numbers");
+  std::int64_t number = 0;
+  randombytes_buf(&number, sizeof number);
+  return std::max<std::int64_t>(1, number & INT64_MAX);
+}
+
+}  // namespace
+
+struct LinkBinding {
+  LinkBinding(ControlLoop& loop, double rate)
+      : behavior(loop.behavior()), entrance(loop.edits().entrance(kEntrance)), feed(loop, rate) {}
+  const behaviors::Behavior& behavior;
+  EditEntrance& entrance;
+  LiveFeed feed;
+};
+
+std::int64_t LinkCounters::rejected_in_all() const noexcept {
+  return std::accumulate(rejected.begin(), rejected.end(), std::int64_t{0});
+}
+
+struct LcmLink::Impl {
+  Impl(ControlLoop& loop, const LinkSettings& how)
+      : settings(how),
+        binding(std::make_shared<LinkBinding>(loop, how.telemetry)),
+        posting(binding.get()),
+        server(loop.behavior(), binding->entrance, {random_number(), how.key.has_value()}),
+        bus(how.url) {
+    bus.subscribe(channel("HELLO"), [this](auto packet) { take_hello(packet); });
+    bus.subscribe(channel("REQUEST"), [this](auto packet) { take_request(packet); });
+  }
+
+  // --- The link's thread. ---
+  std::string channel(const char* name) const { return settings.prefix + "_" + name; }
+  const LiveKey* key() const { return settings.key ? &*settings.key : nullptr; }
+
+  template <class Message>
+  void publish(const char* name, Message&& message) {
+    bus.publish(channel(name), encode(std::forward<Message>(message), key()));
+  }
+
+  template <class Message>
+  bool read(std::span<const std::uint8_t> packet, Message& message) {
+    const PacketProblem problem = decode(packet, key(), message);
+    if (problem == PacketProblem::none) return true;
+    ++counters.rejected[static_cast<std::size_t>(problem)];
+    return false;
+  }
+
+  void take_hello(std::span<const std::uint8_t> packet) {
+    footfall_lcm::hello_t hello;
+    ++counters.heard_hello;
+    if (!read(packet, hello)) return;
+    ++counters.hellos;
+    catalogue_wanted = true;
+  }
+
+  void take_request(std::span<const std::uint8_t> packet) {
+    footfall_lcm::request_t request;
+    ++counters.heard_request;
+    if (!read(packet, request)) return;
+    server.request(request, answers);
+    publish_answers();
+  }
+
+  void publish_answers() {
+    for (footfall_lcm::answer_t& answer : answers) publish("ANSWER", std::move(answer));
+    answers.clear();
+  }
+
+  void publish_catalogue(Clock::time_point now) {
+    if (!catalogue_wanted || now - catalogue_at < kCatalogueApart) return;
+    catalogue_wanted = false;
+    catalogue_at = now;
+    footfall_lcm::catalogue_t catalogue;
+    server.fill_catalogue(catalogue);
+    publish("CATALOGUE", std::move(catalogue));
+    values_wanted = true;  // who asks for one needs both
+  }
+
+  void publish_telemetry(const LiveSnapshot& snapshot) {
+    telemetry.session = server.session();
+    telemetry.generation = server.generation();
+    telemetry.revision = server.revision_of(snapshot.revision);
+    telemetry.dropped = binding->feed.dropped() + dropped_before;
+    fill_telemetry(snapshot, binding->behavior, telemetry);
+    publish("TELEMETRY", telemetry);
+    ++counters.telemetry;
+  }
+
+  bool values_due(const LiveSnapshot& snapshot, Clock::duration since) const {
+    if (snapshot.state != LoopState::running || since >= kValuesPause) return true;
+    const bool moving = snapshot.now != snapshot.target;
+    const bool changed = values_wanted || server.changed() || (told_moving && !moving);
+    return (changed && since >= kValuesApart) || (moving && since >= kMovingApart);
+  }
+
+  void publish_values(const LiveSnapshot& snapshot, Clock::time_point now) {
+    footfall_lcm::values_t values;
+    server.fill_values({snapshot.tick, snapshot.revision, snapshot.now, snapshot.target}, values);
+    publish("VALUES", std::move(values));
+    values_at = now;
+    values_wanted = false;
+    told_moving = snapshot.now != snapshot.target;
+  }
+
+  // Telemetry of all that the tick left, the values of the newest if they are due.
+  void take_snapshots(Clock::time_point now) {
+    while (const LiveSnapshot* snapshot = binding->feed.front()) {
+      if (snapshot->telemetry) publish_telemetry(*snapshot);
+      if (values_due(*snapshot, now - values_at)) publish_values(*snapshot, now);
+      binding->feed.pop();
+    }
+  }
+
+  void take_rebinding() {
+    if (!rebinding.load(std::memory_order_acquire)) return;
+    take_snapshots(Clock::now());
+    dropped_before += binding->feed.dropped();
+    server.rebind(next->behavior, next->entrance, "the behavior was loaded anew", answers);
+    publish_answers();
+    binding = std::move(next);
+    catalogue_wanted = true;
+    rebinding.store(false, std::memory_order_release);
+  }
+
+  void once() {
+    bus.poll(binding->entrance.outstanding() > 0 ? kBusyWait : kIdleWait);
+    server.poll(answers);
+    publish_answers();
+    const Clock::time_point now = Clock::now();
+    publish_catalogue(now);
+    take_snapshots(now);
+    take_rebinding();
+    tell_counters();
+  }
+
+  void tell_counters() {
+    counters.requests = server.counters();
+    counters.strange = bus.strange();
+    counters.dropped = dropped_before + binding->feed.dropped();
+    const std::lock_guard lock(told_mutex);
+    told = counters;
+  }
+
+  void work() noexcept {
+    while (!stopping.load(std::memory_order_acquire)) guarded([this] { once(); });
+    guarded([this] {
+      once();  // the last tick's snapshot
+      server.rebind(binding->behavior, binding->entrance, "the run has ended", answers);
+      publish_answers();
+      tell_counters();
+    });
+  }
+
+  // Out of memory, say: what was at hand is lost, the next packet is not.
+  template <class Step>
+  static void guarded(Step&& step) noexcept {
+    try {
+      step();
+    } catch (...) {
+    }
+  }
+
+  const LinkSettings settings;
+  std::shared_ptr<LinkBinding> binding;
+  LinkBinding* posting;  // of the tick's thread
+  LiveServer server;
+  LcmBus bus;
+  LiveServer::Answers answers;
+  footfall_lcm::telemetry_t telemetry;  // kept for the room that it has
+  LinkCounters counters;
+  std::int64_t dropped_before = 0;  // by the feeds of loops that were replaced
+  bool catalogue_wanted = true, values_wanted = true, told_moving = false;
+  Clock::time_point catalogue_at, values_at;
+
+  // --- Between the threads. ---
+  std::shared_ptr<LinkBinding> next;  // of the tick's thread until `rebinding`, then of the link's
+  std::atomic<bool> rebinding{false}, stopping{false};
+  mutable std::mutex told_mutex;  // never taken by the tick
+  LinkCounters told;
+  std::thread thread;
+};
+
+LcmLink::LcmLink(ControlLoop& loop, const LinkSettings& settings) {
+  check_live_prefix(settings.prefix);
+  impl_ = std::make_unique<Impl>(loop, settings);
+}
+
+LcmLink::~LcmLink() { stop(); }
+
+void LcmLink::start() {
+  impl_->thread = std::thread([impl = impl_.get()] { impl->work(); });
+}
+
+void LcmLink::post(const ControlLoop& loop, std::int64_t tick_ns) noexcept {
+  impl_->posting->feed.post(loop, tick_ns);
+}
+
+void LcmLink::stop() noexcept {
+  if (!impl_->thread.joinable()) return;
+  impl_->stopping.store(true, std::memory_order_release);
+  impl_->thread.join();
+}
+
+std::shared_ptr<LinkBinding> LcmLink::prepare(ControlLoop& loop) const {
+  return std::make_shared<LinkBinding>(loop, impl_->settings.telemetry);
+}
+
+void LcmLink::rebind(std::shared_ptr<LinkBinding> binding) noexcept {
+  impl_->posting = binding.get();
+  impl_->next = std::move(binding);
+  impl_->rebinding.store(true, std::memory_order_release);
+}
+
+bool LcmLink::rebound() const noexcept { return !impl_->rebinding.load(std::memory_order_acquire); }
+
+LinkCounters LcmLink::counters() const {
+  const std::lock_guard lock(impl_->told_mutex);
+  return impl_->told;
+}
+
+}  // namespace footfall::engine

@@ -1,0 +1,237 @@
+// A look at a packet before the generated code reads it; see codec.h. That code believes
+// counts and lengths: it would make room for 2^31 entries that a packet of 60 bytes announces.
+#include "engine/live/codec.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <footfall_lcm/answer_t.hpp>
+#include <footfall_lcm/catalogue_t.hpp>
+#include <footfall_lcm/hello_t.hpp>
+#include <footfall_lcm/request_t.hpp>
+#include <footfall_lcm/telemetry_t.hpp>
+#include <footfall_lcm/values_t.hpp>
+#include <string_view>
+
+#include "core/yaml/text_check.h"
+
+namespace footfall::engine {
+namespace {
+
+using namespace footfall_lcm;
+
+constexpr std::size_t kMacBytes = 32;
+constexpr std::size_t kFingerprintBytes = 8;
+constexpr std::int32_t kLongestName = 128;  // bytes, of what a client may send
+static_assert(kMacBytes == crypto_auth_BYTES && std::tuple_size_v<LiveKey> == crypto_auth_KEYBYTES);
+
+// How the bytes behind the fingerprint follow each other, as in the type's .lcm file:
+//   1 4 8    a number of so many bytes
+//   s n      a text; a name
+//   c {...}  a count; what comes so many times (several groups may share a count)
+//   m        the mac
+struct Layout {
+  std::string_view fields;
+  std::size_t largest = 0;  // packet, bytes
+};
+constexpr Layout layout_of(const hello_t&) { return {"8", 64}; }
+constexpr Layout layout_of(const request_t&) { return {"8881n88c{n4c{8}}c{n}m", 60'000}; }
+constexpr Layout layout_of(const answer_t&) { return {"888s188sc{s}m", 200'000}; }
+constexpr Layout layout_of(const catalogue_t&) {
+  return {"888sss81c{s44s1881s}c{8}c{s}{s}c{s}c{s}c{s}c{s}{s}c{s}m", 4'000'000};
+}
+constexpr Layout layout_of(const values_t&) { return {"888844c{8}{8}m", 1'000'000}; }
+constexpr Layout layout_of(const telemetry_t&) {
+  return {"8888818c{4}c{488}c{888}c{8}44c{4}", 1'000'000};
+}
+
+bool is_signed(const Layout& layout) { return layout.fields.ends_with('m'); }
+
+// Follows a layout through the bytes of a packet.
+class Walk {
+ public:
+  explicit Walk(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
+
+  bool at_end() const { return rest_.empty(); }
+
+  // False: the bytes do not fit the layout.
+  bool follow(std::string_view fields) {
+    std::int32_t count = 0;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      bool good = true;
+      switch (fields[i]) {
+        case 's':
+          good = text(static_cast<std::int32_t>(std::min<std::size_t>(rest_.size(), INT32_MAX)));
+          break;
+        case 'n':
+          good = text(kLongestName);
+          break;
+        case 'm':
+          good = skip(kMacBytes);
+          break;
+        case 'c':
+          good = number(count) && count >= 0;
+          break;
+        case '{': {
+          const std::size_t end = end_of_group(fields, i);
+          const std::string_view group = fields.substr(i + 1, end - i - 1);
+          // No group is of no bytes, so a count that lies ends where the packet does.
+          for (std::int32_t k = 0; good && k < count; ++k) good = follow(group);
+          i = end;
+          break;
+        }
+        default:
+          good = skip(static_cast<std::size_t>(fields[i] - '0'));
+      }
+      if (!good) return false;
+    }
+    return true;
+  }
+
+ private:
+  static std::size_t end_of_group(std::string_view fields, std::size_t begin) {
+    int depth = 0;
+    std::size_t i = begin;
+    do {
+      depth += fields[i] == '{' ? 1 : fields[i] == '}' ? -1 : 0;
+    } while (depth > 0 && ++i < fields.size());
+    return i;
+  }
+
+  bool skip(std::size_t bytes) {
+    if (rest_.size() < bytes) return false;
+    rest_ = rest_.subspan(bytes);
+    return true;
+  }
+
+  bool number(std::int32_t& value) {  // big-endian
+    if (rest_.size() < 4) return false;
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 4; ++k) bits = bits << 8 | rest_[k];
+    value = static_cast<std::int32_t>(bits);
+    return skip(4);
+  }
+
+  // Its length counts the zero at its end.
+  bool text(std::int32_t longest) {
+    std::int32_t length = 0;
+    if (!number(length) || length < 1 || length - 1 > longest) return false;
+    const auto bytes = static_cast<std::size_t>(length);
+    if (rest_.size() < bytes || rest_[bytes - 1] != 0) return false;
+    const std::string_view content(reinterpret_cast<const char*>(rest_.data()), bytes - 1);
+    return core::is_plain_text(content) && skip(bytes);
+  }
+
+  std::span<const std::uint8_t> rest_;
+};
+
+bool has_fingerprint(std::span<const std::uint8_t> packet, std::int64_t fingerprint) {
+  if (packet.size() < kFingerprintBytes) return false;
+  std::uint64_t bits = 0;
+  for (std::size_t k = 0; k < kFingerprintBytes; ++k) bits = bits << 8 | packet[k];
+  return bits == static_cast<std::uint64_t>(fingerprint);
+}
+
+// In constant time.
+bool authentic(std::span<const std::uint8_t> packet, const LiveKey& key) {
+  if (packet.size() < kFingerprintBytes + kMacBytes) return false;
+  const std::size_t size = packet.size() - kMacBytes;
+  return crypto_auth_verify(packet.data() + size, packet.data(), size, key.data()) == 0;
+}
+
+// Counts as the lists are long; lists that share one are of one length.
+std::int32_t count_of(std::size_t size) { return static_cast<std::int32_t>(size); }
+void settle(hello_t&) {}
+void settle(request_t& m) {
+  for (change_t& change : m.changes) change.count = count_of(change.values.size());
+  m.change_count = count_of(m.changes.size());
+  m.event_count = count_of(m.events.size());
+}
+void settle(answer_t& m) { m.reason_count = count_of(m.reasons.size()); }
+void settle(catalogue_t& m) {
+  m.parameter_count = count_of(m.parameters.size());
+  m.value_count = count_of(m.values.size());
+  m.event_count = count_of(m.events.size());
+  m.event_docs.resize(m.events.size());
+  m.state_count = count_of(m.states.size());
+  m.task_count = count_of(m.tasks.size());
+  m.foot_count = count_of(m.feet.size());
+  m.signal_count = count_of(m.signals.size());
+  m.signal_units.resize(m.signals.size());
+  m.fault_count = count_of(m.faults.size());
+}
+void settle(values_t& m) {
+  m.count = count_of(m.now.size());
+  m.target.resize(m.now.size());
+}
+void settle(telemetry_t& m) {
+  m.active_count = count_of(m.active.size());
+  m.task_count = count_of(m.tasks.size());
+  for (std::vector<double>& force : m.forces) force.resize(3);
+  m.foot_count = count_of(m.forces.size());
+  m.fault_count = count_of(m.faults.size());
+  m.signal_count = count_of(m.signals.size());
+}
+
+}  // namespace
+
+const char* packet_problem_name(PacketProblem problem) {
+  constexpr const char* kNames[] = {"none", "too large", "of another type", "not authentic",
+                                    "malformed"};
+  return kNames[static_cast<std::size_t>(problem)];
+}
+
+template <class Message>
+PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
+                     Message& message) noexcept {
+  const Layout layout = layout_of(message);
+  if (packet.size() > layout.largest) return PacketProblem::too_large;
+  if (!has_fingerprint(packet, Message::getHash())) return PacketProblem::wrong_type;
+  if (key != nullptr && is_signed(layout) && !authentic(packet, *key)) {
+    return PacketProblem::not_authentic;
+  }
+  Walk walk(packet.subspan(kFingerprintBytes));
+  if (!walk.follow(layout.fields) || !walk.at_end()) return PacketProblem::malformed;
+  try {
+    Message read{};  // a new one: the generated code leaves lists of no entries as they were
+    const int size = static_cast<int>(packet.size());
+    if (read.decode(packet.data(), 0, size) != size) return PacketProblem::malformed;
+    message = std::move(read);
+  } catch (...) {  // no memory for it
+    return PacketProblem::malformed;
+  }
+  return PacketProblem::none;
+}
+
+template <class Message>
+PacketBytes encode(Message message, const LiveKey* key) {
+  settle(message);
+  const Layout layout = layout_of(message);
+  PacketBytes packet(static_cast<std::size_t>(message.getEncodedSize()));
+  const int size = message.encode(packet.data(), 0, static_cast<int>(packet.size()));
+  packet.resize(static_cast<std::size_t>(std::max(0, size)));
+  if (!is_signed(layout) || packet.size() < kMacBytes) return packet;
+  if (key != nullptr) return seal(std::move(packet), *key);
+  std::fill(packet.end() - kMacBytes, packet.end(), std::uint8_t{0});
+  return packet;
+}
+
+PacketBytes seal(PacketBytes packet, const LiveKey& key) {
+  if (packet.size() < kMacBytes) return packet;
+  const std::size_t size = packet.size() - kMacBytes;
+  crypto_auth(packet.data() + size, packet.data(), size, key.data());
+  return packet;
+}
+
+#define FOOTFALL_MESSAGE(type)                                                                  \
+  template PacketProblem decode(std::span<const std::uint8_t>, const LiveKey*, type&) noexcept; \
+  template PacketBytes encode(type, const LiveKey*);
+FOOTFALL_MESSAGE(hello_t)
+FOOTFALL_MESSAGE(request_t)
+FOOTFALL_MESSAGE(answer_t)
+FOOTFALL_MESSAGE(catalogue_t)
+FOOTFALL_MESSAGE(values_t)
+FOOTFALL_MESSAGE(telemetry_t)
+#undef FOOTFALL_MESSAGE
+
+}  // namespace footfall::engine

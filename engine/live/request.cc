@@ -1,0 +1,140 @@
+// Names to indices, and changes to texts; see request.h.
+#include "engine/live/request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <footfall_lcm/request_t.hpp>
+
+#include "core/diagnostics/diagnostics.h"
+#include "core/index.h"
+#include "core/units/units.h"
+#include "core/yaml/text_check.h"
+
+namespace footfall::engine {
+namespace {
+
+using behaviors::Behavior;
+using behaviors::ParameterInfo;
+
+constexpr std::size_t kMaxName = 96;       // bytes of a name in a text
+constexpr std::size_t kMaxReasons = 32;    // of an answer
+constexpr std::size_t kMaxReason = 240;    // bytes
+constexpr std::size_t kMaxMentioned = 16;  // changes in a text
+constexpr std::size_t kFewChanges = 32;    // are looked at in any case
+
+std::string unknown(const char* what, const std::string& name,
+                    const std::vector<std::string>& known) {
+  const std::string shown = core::printable(name, kMaxName);
+  return fmt::format("no {} '{}'{}", what, shown, core::did_you_mean(shown, known));
+}
+
+std::string number_with_unit(double value, core::Dimension dimension) {
+  // Times are told as people write them.
+  if (dimension == core::kTime && std::abs(value) < 1.0) return fmt::format("{:g} ms", 1e3 * value);
+  const std::string unit = core::unit_text(dimension);
+  return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+std::string edit_text(const Behavior& behavior, const EditValue& edit) {
+  const ParameterInfo& info = behavior.parameters[at(edit.parameter)];
+  std::string text = info.name;
+  if (edit.component >= 0 && info.size > 1) {
+    text += info.size <= 3 ? fmt::format(".{}", "xyz"[edit.component])
+                           : fmt::format("[{}]", edit.component);
+  }
+  text += " = ";
+  if (edit.values.size() == 1) return text + number_with_unit(edit.values[0], info.dimension);
+  std::string list;
+  for (const double value : edit.values) {
+    list += (list.empty() ? "" : ", ") + number_with_unit(value, info.dimension);
+  }
+  return text + "[" + list + "]";
+}
+
+}  // namespace
+
+LiveNames::LiveNames(const Behavior& behavior) {
+  for (std::size_t i = 0; i < behavior.parameters.size(); ++i) {
+    const ParameterInfo& info = behavior.parameters[i];
+    if (!info.live) continue;
+    parameters.push_back(static_cast<int>(i));
+    parameter_names.push_back(info.name);
+    value_count += at(info.size);
+  }
+  for (std::size_t i = 0; i < behavior.events.size(); ++i) {
+    if (is_built_in_event(behavior, static_cast<int>(i))) continue;
+    events.push_back(static_cast<int>(i));
+    event_names.push_back(behavior.events[i]);
+  }
+}
+
+EditBatch read_edit(const Behavior& behavior, const LiveNames& names,
+                    const footfall_lcm::request_t& request, std::vector<std::string>& reasons) {
+  EditBatch batch;
+  batch.over = request.over;
+  // No value may be given twice: more changes than values are wrong in any case.
+  if (const std::size_t most = std::max(names.value_count, kFewChanges);
+      request.changes.size() > most) {
+    reasons.push_back(
+        fmt::format("{} changes: at most {} in one edit", request.changes.size(), most));
+  } else {
+    for (const footfall_lcm::change_t& change : request.changes) {
+      const behaviors::ParameterPart part = behavior.find_parameter_part(change.name);
+      if (part.parameter < 0) {
+        reasons.push_back(unknown("parameter", change.name, names.parameter_names));
+        continue;
+      }
+      // `goal.y` is that component; `goal.y` and a component of it would be one too many.
+      const bool twice = part.component >= 0 && change.component >= 0;
+      if (twice) reasons.push_back(core::printable(change.name, kMaxName) + ": is one value");
+      const int component = part.component >= 0 ? part.component : change.component;
+      batch.values.push_back({part.parameter, component, change.values});
+    }
+  }
+  if (request.events.size() > kMaxEditEvents) {
+    reasons.push_back(
+        fmt::format("{} events: at most {} in one edit", request.events.size(), kMaxEditEvents));
+    return batch;
+  }
+  for (const std::string& name : request.events) {
+    const int event = behavior.find_event(name);
+    if (event < 0) {
+      reasons.push_back(unknown("event", name, names.event_names));
+    } else {
+      batch.events.push_back(event);
+    }
+  }
+  return batch;
+}
+
+std::string change_text(const Behavior& behavior, const EditBatch& batch, double ramp) {
+  std::string text;
+  const auto add = [&text](const std::string& part) {
+    text += text.empty() ? "" : ", ";
+    text += part;
+  };
+  const std::size_t mentioned = std::min(batch.values.size(), kMaxMentioned);
+  for (std::size_t i = 0; i < mentioned; ++i) add(edit_text(behavior, batch.values[i]));
+  if (mentioned < batch.values.size()) {
+    add(fmt::format("{} more", batch.values.size() - mentioned));
+  }
+  if (ramp > 0.0 && !batch.values.empty()) {
+    text += " over " + number_with_unit(ramp, core::kTime);
+  }
+  for (const int event : batch.events) add("raise " + behavior.events[at(event)]);
+  return text;
+}
+
+std::vector<std::string> shortened(std::vector<std::string> reasons) {
+  for (std::string& reason : reasons) reason = core::printable(reason, kMaxReason);
+  if (reasons.size() > kMaxReasons) {
+    const std::size_t missing = reasons.size() - kMaxReasons;
+    reasons.resize(kMaxReasons);
+    reasons.push_back(fmt::format("and {} more", missing));
+  }
+  return reasons;
+}
+
+}  // namespace footfall::engine

@@ -1,0 +1,108 @@
+// Checks and clamps; see safety.h.
+#include "engine/tick/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footfall::engine {
+
+using core::Fault;
+
+namespace {
+
+// As near to `wanted` as a step of `bound` from `previous` comes; the rounded difference of the two
+// is not beyond it either.
+double limited_step(double previous, double wanted, double bound) noexcept {
+  double tau = std::clamp(wanted, previous - bound, previous + bound);
+  while (std::abs(tau - previous) > bound) tau = std::nextafter(tau, previous);
+  return tau;
+}
+
+}  // namespace
+
+FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,
+                        const model::ControlModel& model) noexcept {
+  FallCriteria fall;
+  const double base = model.state().p_WB[2];
+  double ground = base;
+  for (int c = 0; c < model.contact_count(); ++c) {
+    ground = std::min(ground, model.point(c).position[2]);
+  }
+  fall.height = base - ground;
+  fall.height_limit = robot.height_limit * robot.standing_height;
+  fall.low =
+      model.contact_count() > 0 && robot.standing_height > 0.0 && fall.height < fall.height_limit;
+  const double upright = model.R_WB()[8];  // cos of the tilt
+  fall.tilt = std::acos(std::clamp(upright, -1.0, 1.0));
+  fall.tilt_limit = robot.tilt_limit;
+  fall.tilted = upright < std::cos(robot.tilt_limit);
+  fall.touching = sensors.body_contact;
+  return fall;
+}
+
+SafetyFilter::SafetyFilter(const model::RobotDescription& robot) : robot_(robot) {}
+
+SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
+                                         const model::ControlModel& model) noexcept {
+  SafetyFindings findings;
+  if (sensors.backend_fault) findings.add(Fault::simulator_warning);
+  if (!sensors.imu_fresh) findings.add(Fault::imu_stale);
+  if (!sensors.mocap_fresh) findings.add(Fault::mocap_stale);
+  const model::State& state = model.state();
+  bool finite = true;
+  for (int j = 0; j < model.joint_count(); ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    finite &= std::isfinite(state.q[i]) && std::isfinite(state.qd[i]);
+    const model::JointDescription& joint = robot_.joints[i];
+    if (state.q[i] < joint.position_min || state.q[i] > joint.position_max) {
+      const double excess =
+          std::max(joint.position_min - state.q[i], state.q[i] - joint.position_max);
+      findings.add(Fault::joint_limit, {j, state.q[i], excess});
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    finite &= std::isfinite(state.p_WB[k]) && std::isfinite(state.v_WB[k]) &&
+              std::isfinite(state.w_WB_B[k]);
+  }
+  for (const double q : state.q_WB) finite &= std::isfinite(q);
+  if (!finite) findings.add(Fault::non_finite);
+
+  if (judge_fall(robot_, sensors, model).fallen()) findings.add(Fault::fall);
+  return findings;
+}
+
+SafetyFindings SafetyFilter::filter(hal::Commands& commands, bool limit_steps) noexcept {
+  SafetyFindings findings;
+  torque_step_ = 0.0;
+  held_back_ = false;
+  const double bound = limit_steps && have_previous_ ? robot_.torque_step_limit : 0.0;
+  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+    double& tau = commands.tau[j];
+    const bool finite = std::isfinite(tau);
+    if (!finite) {
+      tau = 0.0;
+      findings.add(Fault::non_finite);
+    }
+    const double limit = robot_.joints[j].torque_limit;
+    if (limit > 0.0 && std::abs(tau) >= limit) {
+      findings.add(Fault::torque_limit, {static_cast<int>(j), tau, std::abs(tau) - limit});
+      tau = std::clamp(tau, -limit, limit);
+    }
+    // What is not finite is let go at once.
+    if (bound > 0.0 && finite && std::abs(tau - previous_[j]) > bound) {
+      tau = limited_step(previous_[j], tau, bound);
+      held_back_ = true;
+    }
+    const double step = have_previous_ ? tau - previous_[j] : 0.0;
+    torque_step_ = std::max(torque_step_, std::abs(step));
+    const double excess = std::abs(step) - robot_.torque_step_limit;
+    if (robot_.torque_step_limit > 0.0 && excess > 0.0) {
+      findings.add(Fault::torque_step, {static_cast<int>(j), step, excess});
+    }
+    previous_[j] = tau;
+  }
+  have_previous_ = true;
+  return findings;
+}
+
+}  // namespace footfall::engine
