@@ -14,7 +14,7 @@
 #include "lab/scenario_loader.h"
 #include "lab/suite_files.h"
 #include "model/control_model.h"
-#include "sim/world_description.h"
+#include "sim/world/description.h"
 
 namespace footfall::apps {
 namespace {

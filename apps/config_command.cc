@@ -12,7 +12,7 @@
 #include "core/yaml_text/write.h"
 #include "lab/scenario_keys.h"
 #include "model/robot/keys.h"
-#include "sim/world_keys.h"
+#include "sim/world/keys.h"
 
 namespace footfall::apps {
 namespace {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "lab/report_data.h"
-#include "sim/film_movie.h"
+#include "sim/view/movie.h"
 
 namespace footfall::apps {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lab/log_reader.h"
-#include "sim/film.h"
+#include "sim/view/film.h"
 
 namespace footfall::apps {
 

@@ -12,7 +12,7 @@
 #include "lab/run.h"
 #include "lab/scenario_loader.h"
 #include "lab/summary.h"
-#include "sim/disturbance.h"
+#include "sim/world/disturbance.h"
 
 namespace footfall::apps {
 namespace {

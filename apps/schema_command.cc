@@ -11,7 +11,7 @@
 #include "lab/scenario_keys.h"
 #include "lab/sweep_keys.h"
 #include "model/robot/keys.h"
-#include "sim/world_keys.h"
+#include "sim/world/keys.h"
 
 namespace footfall::apps {
 

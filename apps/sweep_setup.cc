@@ -11,7 +11,7 @@
 #include "lab/scenario_loader.h"
 #include "lab/sweep_check.h"
 #include "lab/sweep_files.h"
-#include "sim/world_description.h"
+#include "sim/world/description.h"
 
 namespace footfall::apps {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "hal/hardware.h"
 #include "model/robot/description.h"
-#include "sim/disturbance.h"
-#include "sim/world_description.h"
+#include "sim/world/description.h"
+#include "sim/world/disturbance.h"
 
 struct mjModel_;
 struct mjData_;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "model/robot/description.h"
-#include "sim/world_description.h"
+#include "sim/world/description.h"
 
 namespace footfall::sim {
 

@@ -3,7 +3,7 @@
 // from them; so none of the three can know a key that the others do not.
 //
 // The tables are constants beside their loaders: behaviors/language/language*.cc,
-// model/robot/keys.cc, sim/world_keys.cc. The functions are for load time.
+// model/robot/keys.cc, sim/world/keys.cc. The functions are for load time.
 #pragma once
 
 #include <array>

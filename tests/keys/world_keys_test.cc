@@ -1,12 +1,11 @@
 // Each key of world files is one that the loader reads.
-#include "sim/world_keys.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
-#include "sim/world_description.h"
+#include "sim/world/description.h"
+#include "sim/world/keys.h"
 #include "tests/keys/key_uses.h"
 
 namespace footfall::tests {

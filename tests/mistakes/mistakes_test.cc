@@ -18,7 +18,7 @@
 #include "core/diagnostics/ids.h"
 #include "lab/scenario_loader.h"
 #include "model/robot/description.h"
-#include "sim/world_description.h"
+#include "sim/world/description.h"
 #include "tests/mistakes/source_ids.h"
 
 namespace footfall::tests {

@@ -1,5 +1,5 @@
 // Pictures without a window: something is drawn, it follows the configuration, errors are clear.
-#include "sim/film.h"
+#include "sim/view/film.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <set>
 
-#include "sim/film_movie.h"
+#include "sim/view/movie.h"
 
 namespace footfall::sim {
 namespace {

@@ -1,11 +1,11 @@
 // World files: a whole one, the default, each mistake at its place, and nothing ignored in silence.
-#include "sim/world_description.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+
+#include "sim/world/description.h"
 
 namespace footfall::sim {
 namespace {

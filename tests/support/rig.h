@@ -11,7 +11,7 @@
 #include "behaviors/loader.h"
 #include "engine/tick/control_loop.h"
 #include "sim/mujoco_backend.h"
-#include "sim/world_description.h"
+#include "sim/world/description.h"
 
 namespace footfall::tests {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/image.h"
+#include "sim/view/image.h"
 
 namespace footfall::sim {
 

@@ -1,5 +1,5 @@
-// Reads a `world: 1` file into a WorldDescription and checks it; see world_description.h.
-#include "sim/world_description.h"
+// Reads a `world: 1` file into a WorldDescription and checks it; see description.h.
+#include "sim/world/description.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/yaml/value_reader.h"
-#include "sim/world_keys.h"
+#include "sim/world/keys.h"
 
 namespace footfall::sim {
 

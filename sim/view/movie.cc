@@ -1,5 +1,5 @@
-// Frames to ffmpeg; see film_movie.h.
-#include "sim/film_movie.h"
+// Frames to ffmpeg; see movie.h.
+#include "sim/view/movie.h"
 
 #include <csignal>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Pictures; see image.h. The one place with stb's implementation of PNG.
-#include "sim/image.h"
+#include "sim/view/image.h"
 
 #include <algorithm>
 #include <fstream>

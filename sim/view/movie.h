@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "sim/image.h"
+#include "sim/view/image.h"
 
 namespace footfall::sim {
 

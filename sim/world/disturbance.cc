@@ -1,5 +1,5 @@
 // Pushes and pairs of numbers from the command line; see disturbance.h.
-#include "sim/disturbance.h"
+#include "sim/world/disturbance.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // MuJoCo's renderer without a window; see film.h.
-#include "sim/film.h"
+#include "sim/view/film.h"
 
 #include <mujoco/mujoco.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "model/mjcf.h"
-#include "sim/film_context.h"
+#include "sim/view/context.h"
 
 namespace footfall::sim {
 namespace {

@@ -1,5 +1,5 @@
-// Keys and words of a world file; see world_keys.h.
-#include "sim/world_keys.h"
+// Keys and words of a world file; see keys.h.
+#include "sim/world/keys.h"
 
 namespace footfall::sim {
 namespace {

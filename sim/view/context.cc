@@ -1,5 +1,5 @@
-// OpenGL without a screen; see film_context.h.
-#include "sim/film_context.h"
+// OpenGL without a screen; see context.h.
+#include "sim/view/context.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
