@@ -11,8 +11,8 @@
 #include "apps/output_file.h"
 #include "apps/sweep_setup.h"
 #include "behaviors/check/physics/check.h"
-#include "lab/scenario_loader.h"
-#include "lab/suite_files.h"
+#include "lab/scenario/loader.h"
+#include "lab/suite/files.h"
 #include "model/control_model.h"
 #include "sim/world/description.h"
 

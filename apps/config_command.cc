@@ -10,7 +10,7 @@
 #include "behaviors/language/language.h"
 #include "core/yaml/explain.h"
 #include "core/yaml_text/write.h"
-#include "lab/scenario_keys.h"
+#include "lab/scenario/keys.h"
 #include "model/robot/keys.h"
 #include "sim/world/keys.h"
 

@@ -12,7 +12,7 @@
 #include "apps/log_argument.h"
 #include "core/units/units.h"
 #include "core/yaml/text_check.h"
-#include "lab/log_reader.h"
+#include "lab/log/reader.h"
 
 namespace footfall::apps {
 namespace {

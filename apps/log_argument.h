@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "lab/log_reader.h"
+#include "lab/log/reader.h"
 
 namespace footfall::apps {
 

@@ -6,8 +6,8 @@
 #include "apps/commands.h"
 #include "apps/live_options.h"
 #include "apps/report_command.h"
-#include "lab/process_pool.h"
-#include "lab/version.h"
+#include "lab/process/pool.h"
+#include "lab/run/version.h"
 
 int main(int argc, char** argv) {
   footfall::lab::die_with_parent();

@@ -12,10 +12,10 @@
 #include "apps/commands.h"
 #include "apps/log_argument.h"
 #include "engine/tick/control_loop.h"
-#include "lab/log_diff.h"
-#include "lab/log_setup.h"
-#include "lab/reload.h"
-#include "lab/replay.h"
+#include "lab/log/diff.h"
+#include "lab/replay/replay.h"
+#include "lab/run/log_setup.h"
+#include "lab/run/reload.h"
 
 namespace footfall::apps {
 namespace {

@@ -15,11 +15,11 @@
 #include "apps/output_file.h"
 #include "apps/report_film.h"
 #include "core/units/units.h"
-#include "lab/log_reader.h"
-#include "lab/log_window.h"
-#include "lab/reload.h"
-#include "lab/report.h"
-#include "lab/report_states.h"
+#include "lab/log/reader.h"
+#include "lab/log/window.h"
+#include "lab/report/report.h"
+#include "lab/report/states.h"
+#include "lab/run/reload.h"
 
 namespace footfall::apps {
 namespace {

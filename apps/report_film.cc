@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "lab/report_data.h"
+#include "lab/report/data.h"
 #include "sim/view/movie.h"
 
 namespace footfall::apps {

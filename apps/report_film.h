@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/log_reader.h"
+#include "lab/log/reader.h"
 #include "sim/view/film.h"
 
 namespace footfall::apps {

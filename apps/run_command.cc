@@ -9,9 +9,9 @@
 #include "apps/run_options.h"
 #include "apps/run_reload.h"
 #include "apps/run_setup.h"
-#include "lab/run.h"
-#include "lab/scenario_loader.h"
-#include "lab/summary.h"
+#include "lab/run/run.h"
+#include "lab/run/summary.h"
+#include "lab/scenario/loader.h"
 #include "sim/world/disturbance.h"
 
 namespace footfall::apps {

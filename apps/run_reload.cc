@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <set>
 
-#include "lab/log_setup.h"
+#include "lab/run/log_setup.h"
 
 namespace footfall::apps {
 namespace {

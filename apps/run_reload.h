@@ -5,7 +5,7 @@
 
 #include "apps/run_setup.h"
 #include "engine/realtime/file_watch.h"
-#include "lab/reload.h"
+#include "lab/run/reload.h"
 
 namespace footfall::apps {
 

@@ -11,8 +11,8 @@
 #include "apps/run_setup.h"
 #include "behaviors/check/physics/check.h"
 #include "hal/sensors/faults.h"
-#include "lab/scenario_loader.h"
-#include "lab/scenario_run.h"
+#include "lab/judge/run.h"
+#include "lab/scenario/loader.h"
 
 namespace footfall::apps {
 namespace {

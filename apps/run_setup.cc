@@ -14,7 +14,7 @@
 #include "core/realtime/allocation_count.h"
 #include "core/yaml/text_check.h"
 #include "hal/backends/stub.h"
-#include "lab/run_log.h"
+#include "lab/run/run_log.h"
 
 namespace footfall::apps {
 

@@ -12,9 +12,9 @@
 #include "engine/lcm/link.h"
 #include "engine/log/writer.h"
 #include "engine/tick/control_loop.h"
-#include "lab/run.h"
-#include "lab/run_log.h"
-#include "lab/summary.h"
+#include "lab/run/run.h"
+#include "lab/run/run_log.h"
+#include "lab/run/summary.h"
 #include "sim/mujoco_backend.h"
 
 namespace footfall::apps {

@@ -8,8 +8,8 @@
 #include "apps/json_schema.h"
 #include "apps/reference.h"
 #include "behaviors/language/language.h"
-#include "lab/scenario_keys.h"
-#include "lab/sweep_keys.h"
+#include "lab/scenario/keys.h"
+#include "lab/sweep/plan/keys.h"
 #include "model/robot/keys.h"
 #include "sim/world/keys.h"
 

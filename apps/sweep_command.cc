@@ -15,12 +15,12 @@
 #include "apps/sweep_setup.h"
 #include "apps/sweep_slurm.h"
 #include "core/yaml_text/write.h"
-#include "lab/process_pool.h"
-#include "lab/suite_files.h"
-#include "lab/sweep_files.h"
-#include "lab/sweep_report.h"
-#include "lab/sweep_session.h"
-#include "lab/version.h"
+#include "lab/process/pool.h"
+#include "lab/run/version.h"
+#include "lab/suite/files.h"
+#include "lab/sweep/plan/files.h"
+#include "lab/sweep/results/report.h"
+#include "lab/sweep/results/session.h"
 
 namespace footfall::apps {
 namespace {

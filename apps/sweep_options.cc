@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "apps/run_setup.h"
-#include "lab/process_pool.h"
+#include "lab/process/pool.h"
 
 namespace footfall::apps {
 namespace {

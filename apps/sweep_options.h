@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/sweep_loader.h"
+#include "lab/sweep/plan/loader.h"
 
 namespace CLI {
 class App;

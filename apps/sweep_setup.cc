@@ -8,9 +8,9 @@
 
 #include "apps/commands.h"
 #include "apps/output_file.h"
-#include "lab/scenario_loader.h"
-#include "lab/sweep_check.h"
-#include "lab/sweep_files.h"
+#include "lab/scenario/loader.h"
+#include "lab/sweep/plan/check.h"
+#include "lab/sweep/plan/files.h"
 #include "sim/world/description.h"
 
 namespace footfall::apps {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.h"
-#include "lab/sweep_loader.h"
+#include "lab/sweep/plan/loader.h"
 
 namespace footfall::apps {
 

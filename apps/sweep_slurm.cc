@@ -6,8 +6,8 @@
 #include "apps/commands.h"
 #include "apps/output_file.h"
 #include "apps/run_setup.h"
-#include "lab/process_pool.h"
-#include "lab/report_page.h"
+#include "lab/process/pool.h"
+#include "lab/report/page.h"
 
 namespace footfall::apps {
 namespace {

@@ -13,10 +13,10 @@
 #include "apps/output_file.h"
 #include "apps/run_setup.h"
 #include "core/units/units.h"
-#include "lab/bless.h"
-#include "lab/process_pool.h"
-#include "lab/suite_files.h"
-#include "lab/suite_run.h"
+#include "lab/process/pool.h"
+#include "lab/suite/bless.h"
+#include "lab/suite/files.h"
+#include "lab/suite/run.h"
 
 namespace footfall::apps {
 namespace {

@@ -10,7 +10,7 @@
 #include "apps/commands.h"
 #include "apps/log_argument.h"
 #include "core/units/units.h"
-#include "lab/why.h"
+#include "lab/replay/why.h"
 
 namespace footfall::apps {
 namespace {

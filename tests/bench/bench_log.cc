@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "lab/run_log.h"
+#include "lab/run/run_log.h"
 #include "tests/support/rig.h"
 
 namespace footfall {

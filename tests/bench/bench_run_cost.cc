@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "engine/log/writer.h"
-#include "lab/run.h"
-#include "lab/run_log.h"
+#include "lab/run/run.h"
+#include "lab/run/run_log.h"
 #include "tests/support/rig.h"
 
 namespace footfall {

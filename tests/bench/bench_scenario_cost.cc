@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "hal/sensors/faults.h"
-#include "lab/run_log.h"
-#include "lab/scenario_loader.h"
-#include "lab/scenario_run.h"
+#include "lab/judge/run.h"
+#include "lab/run/run_log.h"
+#include "lab/scenario/loader.h"
 #include "tests/support/rig.h"
 
 namespace footfall {

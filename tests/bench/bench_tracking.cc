@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "lab/step_counter.h"
+#include "lab/run/step_counter.h"
 #include "tests/support/rig.h"
 
 namespace footfall {

@@ -13,8 +13,8 @@
 #include "engine/log/schema.h"
 #include "engine/log/writer.h"
 #include "engine/tick/inputs.h"
-#include "lab/log_reader.h"
-#include "lab/mcap_reader.h"
+#include "lab/log/mcap.h"
+#include "lab/log/reader.h"
 #include "tests/support/allocation_guard.h"
 
 namespace footfall::engine {

@@ -1,13 +1,12 @@
 // Each key of scenario files is one that the loader reads.
-#include "lab/scenario_keys.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "lab/scenario_loader.h"
+#include "lab/scenario/keys.h"
+#include "lab/scenario/loader.h"
 #include "tests/keys/key_uses.h"
 
 namespace footfall::tests {

@@ -1,14 +1,13 @@
 // Each key of sweep files is one that the loader reads.
-#include "lab/sweep_keys.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
 #include <sstream>
 
-#include "lab/scenario_keys.h"
-#include "lab/sweep_loader.h"
+#include "lab/scenario/keys.h"
+#include "lab/sweep/plan/keys.h"
+#include "lab/sweep/plan/loader.h"
 #include "tests/keys/key_uses.h"
 
 namespace footfall::tests {

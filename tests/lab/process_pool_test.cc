@@ -1,10 +1,10 @@
 // What becomes of children that end well, crash, hang, flood and leave children behind.
-#include "lab/process_pool.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
+
+#include "lab/process/pool.h"
 
 namespace footfall::lab {
 namespace {

@@ -1,6 +1,6 @@
 // Reloads of a run: the new file's log goes on where the old one ends and both replay as one, wrong
 // files are refused in the words of `check`, and a fault brings the former behavior back.
-#include "lab/reload.h"
+#include "lab/run/reload.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,9 +9,9 @@
 #include <fstream>
 
 #include "behaviors/check/physics/check.h"
-#include "lab/log_reader.h"
-#include "lab/replay.h"
-#include "lab/run.h"
+#include "lab/log/reader.h"
+#include "lab/replay/replay.h"
+#include "lab/run/run.h"
 #include "tests/support/rig.h"
 
 namespace footfall::tests {

@@ -1,6 +1,6 @@
 // A log replays bit for bit from itself alone; one bit of one gain is found; two logs are told
 // apart where they part; a decision is explained by the values it was made from.
-#include "lab/replay.h"
+#include "lab/replay/replay.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 #include <fstream>
 
 #include "engine/log/writer.h"
-#include "lab/log_diff.h"
-#include "lab/run.h"
-#include "lab/run_log.h"
-#include "lab/why.h"
+#include "lab/log/diff.h"
+#include "lab/replay/why.h"
+#include "lab/run/run.h"
+#include "lab/run/run_log.h"
 #include "tests/support/rig.h"
 
 namespace footfall::tests {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "lab/log_window.h"
-#include "lab/report.h"
-#include "lab/report_sections.h"
-#include "lab/report_states.h"
+#include "lab/log/window.h"
+#include "lab/report/report.h"
+#include "lab/report/sections.h"
+#include "lab/report/states.h"
 
 namespace footfall::lab {
 namespace {

@@ -1,5 +1,5 @@
 // The report is one page that needs nothing else, with every section, in both ways of drawing.
-#include "lab/report.h"
+#include "lab/report/report.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "lab/log_window.h"
-#include "lab/report_data.h"
-#include "lab/report_plot.h"
+#include "lab/log/window.h"
+#include "lab/report/data.h"
+#include "lab/report/plot.h"
 
 namespace footfall::lab {
 namespace {

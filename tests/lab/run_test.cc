@@ -1,5 +1,5 @@
 // Runs: what ends them, when pushes fire, and that the figures are those of the logged signals.
-#include "lab/run.h"
+#include "lab/run/run.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,9 +9,9 @@
 #include <fstream>
 #include <limits>
 
-#include "lab/log_reader.h"
-#include "lab/run_log.h"
-#include "lab/summary.h"
+#include "lab/log/reader.h"
+#include "lab/run/run_log.h"
+#include "lab/run/summary.h"
 #include "tests/support/rig.h"
 
 namespace footfall::tests {

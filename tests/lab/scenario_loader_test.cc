@@ -1,11 +1,11 @@
 // Scenario files: a whole one becomes what it says, and each mistake is found at its place.
-#include "lab/scenario_loader.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+
+#include "lab/scenario/loader.h"
 
 namespace footfall::lab {
 namespace {

@@ -1,7 +1,5 @@
 // Scenarios that run: scripts act when they say, expectations are judged as they say, on a robot of
 // double integrators whose states only time moves.
-#include "lab/scenario_run.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -12,7 +10,8 @@
 
 #include "hal/backends/stub.h"
 #include "hal/sensors/faults.h"
-#include "lab/scenario_loader.h"
+#include "lab/judge/run.h"
+#include "lab/scenario/loader.h"
 
 namespace footfall::lab {
 namespace {

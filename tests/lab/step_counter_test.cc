@@ -1,6 +1,6 @@
 // What a step is: 60 ms without ground contact, a rise of 2 cm, and then the foot that stands
 // alone.
-#include "lab/step_counter.h"
+#include "lab/run/step_counter.h"
 
 #include <gtest/gtest.h>
 

@@ -9,12 +9,12 @@
 #include <numeric>
 #include <set>
 
-#include "lab/sweep_factors.h"
-#include "lab/sweep_loader.h"
-#include "lab/sweep_report.h"
-#include "lab/sweep_sample.h"
-#include "lab/sweep_session.h"
-#include "lab/sweep_store.h"
+#include "lab/sweep/plan/loader.h"
+#include "lab/sweep/plan/sample.h"
+#include "lab/sweep/results/factors.h"
+#include "lab/sweep/results/report.h"
+#include "lab/sweep/results/session.h"
+#include "lab/sweep/results/store.h"
 
 namespace footfall::lab {
 namespace {

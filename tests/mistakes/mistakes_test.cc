@@ -16,7 +16,7 @@
 
 #include "behaviors/loader.h"
 #include "core/diagnostics/ids.h"
-#include "lab/scenario_loader.h"
+#include "lab/scenario/loader.h"
 #include "model/robot/description.h"
 #include "sim/world/description.h"
 #include "tests/mistakes/source_ids.h"

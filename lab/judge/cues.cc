@@ -1,0 +1,226 @@
+// When entries of a script are due, and what they do; see cues.h.
+#include "lab/judge/cues.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "behaviors/compiled/chart.h"
+#include "core/index.h"
+#include "lab/judge/result.h"
+#include "lab/scenario/keys.h"
+
+namespace footfall::lab {
+namespace {
+
+std::string fault_word(InjectedFault fault) {
+  return std::string(kInjectedFaults[static_cast<std::size_t>(fault)].word);
+}
+
+}  // namespace
+
+std::vector<std::string> unsupported(const ScenarioDescription& scenario,
+                                     const ScenarioHooks& hooks) {
+  std::vector<std::string> texts;
+  for (const ScriptEntry& entry : scenario.script) {
+    const auto refuse = [&](const char* what) {
+      texts.push_back(fmt::format("{}: error: this backend cannot {}",
+                                  place_in_file(scenario, entry.mark), what));
+    };
+    if (entry.push && !hooks.push) refuse("push: it has no physics");
+    if (!entry.hold.empty() && !hooks.hold) refuse("hold a body: it has no physics");
+    if (entry.fault && entry.fault != InjectedFault::planner_dropout && !hooks.fault) {
+      refuse("let its sensors fail");
+    }
+  }
+  return texts;
+}
+
+ScenarioCues::ScenarioCues(const ScenarioDescription& scenario, const ScenarioHooks& hooks,
+                           engine::ControlLoop& loop, std::uint64_t seed)
+    : scenario_(scenario), hooks_(hooks), loop_(loop) {
+  if (!scenario.scripts.empty()) lua_.emplace(scenario, loop, seed);
+  for (const ScriptEntry& entry : scenario.script) {
+    Cue& cue = cues_.emplace_back();
+    cue.entry = &entry;
+    if (entry.moment.kind == Moment::Kind::place) watch(entry.moment);
+    if (entry.moment.kind != Moment::Kind::event) continue;
+    for (const std::string& event : loop.behavior().events) {
+      cue.events.push_back(behaviors::Chart::event_matches(entry.moment.event, event));
+    }
+  }
+}
+
+void ScenarioCues::watch(const Moment& moment) {
+  const behaviors::Behavior& behavior = loop_.behavior();
+  for (const int state : moment.states) {
+    if (std::ranges::any_of(watched_, [state](const Watched& w) { return w.state == state; })) {
+      continue;
+    }
+    Watched watched;
+    watched.state = state;
+    const behaviors::Range own = behavior.states[at(state)].transitions;
+    for (int t = own.first; t < own.end(); ++t) {
+      const behaviors::TransitionInfo& info = behavior.transitions[at(t)];
+      if (info.after >= 0 && !info.has_event) watched.timer = t;
+    }
+    watched_.push_back(watched);
+  }
+}
+
+void ScenarioCues::observe() {
+  const behaviors::Machine& machine = loop_.machine();
+  for (Cue& cue : cues_) {
+    if (cue.events.empty()) continue;
+    for (const int event : machine.events_taken()) cue.heard += cue.events[at(event)] ? 1 : 0;
+  }
+  for (Watched& w : watched_) {
+    const bool active = machine.is_active(w.state);
+    const bool entered = machine.entries(w.state) != w.entries;
+    if (w.active && (entered || !active) && w.timer < 0) w.duration = loop_.ticks() - w.entered;
+    w.active = active;
+    if (!entered) continue;
+    w.entries = machine.entries(w.state);
+    w.entered = loop_.ticks();
+    if (w.timer < 0) continue;
+    const behaviors::Behavior& behavior = loop_.behavior();
+    const double seconds = behaviors::evaluate(
+        behavior.expressions, behavior.transitions[at(w.timer)].after, machine.context());
+    w.duration = behaviors::periods_of(seconds, behavior.rate_mhz);
+  }
+}
+
+void ScenarioCues::fire(const StepClock& steps, RunLog& log) {
+  end_lasting(log);
+  for (Cue& cue : cues_) {
+    if (!cue.events.empty()) {
+      for (; cue.heard > 0; --cue.heard) act(*cue.entry, log);
+    } else if (!cue.done && due(cue, steps)) {
+      cue.done = true;
+      act(*cue.entry, log);
+    }
+  }
+}
+
+bool ScenarioCues::due(const Cue& cue, const StepClock& steps) const {
+  const Moment& moment = cue.entry->moment;
+  // Half a period: times are whole numbers of periods up to round-off.
+  const double now = loop_.time() + 0.5 * loop_.period();
+  if (moment.kind == Moment::Kind::time) return now >= moment.time;
+  if (steps.steps < moment.step) return false;
+  if (!moment.states.empty()) return in_phase(moment);
+  return now >= steps.last_step_at + moment.phase * steps.last_duration;
+}
+
+bool ScenarioCues::in_phase(const Moment& moment) const {
+  return std::ranges::any_of(watched_, [&](const Watched& w) {
+    if (!w.active || std::ranges::find(moment.states, w.state) == moment.states.end()) return false;
+    if (moment.phase <= 0.0) return true;
+    const auto passed = static_cast<double>(loop_.ticks() - w.entered);
+    return w.duration >= 0 && passed >= moment.phase * static_cast<double>(w.duration) - 1e-9;
+  });
+}
+
+void ScenarioCues::act(const ScriptEntry& entry, RunLog& log) {
+  if (entry.push) {
+    const ScriptedPush& push = *entry.push;
+    const std::string& body = push.body.empty() ? loop_.behavior().robot.floating_base : push.body;
+    log.event("push", body,
+              fmt::format("{:g} N, {:g} s, {:g} rad", push.force, push.duration, push.direction));
+    if (!hooks_.push(body, push.force, push.direction, push.duration)) {
+      problem_ = place_of(entry) + ": too many pushes at once";
+    }
+  }
+  if (!entry.set.empty()) submit(entry, entry.set, engine::EditSource::set, log);
+  if (!entry.edit.empty() || entry.raise >= 0) {
+    submit(entry, entry.edit, engine::EditSource::scenario, log);
+  }
+  if (!entry.call.empty()) call(entry, log);
+  const std::int64_t until = entry.duration ? loop_.ticks() + ticks_of(*entry.duration)
+                                            : std::numeric_limits<std::int64_t>::max();
+  if (entry.fault) {
+    log.event("inject", fault_word(*entry.fault), "on");
+    inject(*entry.fault, true);
+    lasting_.push_back({until, -1, *entry.fault});
+  }
+  if (!entry.hold.empty()) {
+    log.event("hold", entry.hold, "on");
+    hooks_.hold(entry.hold, true);
+    lasting_.push_back({until, static_cast<int>(bodies_.size()), {}});
+    bodies_.push_back(entry.hold);
+  }
+}
+
+void ScenarioCues::submit(const ScriptEntry& entry, const std::vector<NewValues>& values,
+                          engine::EditSource source, RunLog& log) {
+  engine::EditBatch batch;
+  batch.source = source;
+  for (const NewValues& value : values) {
+    const int size = loop_.behavior().parameters[at(value.parameter)].size;
+    const bool one = value.values.size() == 1 && size > 1;
+    batch.values.push_back({value.parameter, one ? value.first : -1, value.values});
+  }
+  if (source == engine::EditSource::scenario) {
+    batch.over = entry.over;
+    if (entry.raise >= 0) batch.events.push_back(entry.raise);
+  }
+  hand_in(entry, batch, log);
+}
+
+void ScenarioCues::call(const ScriptEntry& entry, RunLog& log) {
+  const ScenarioLua::Result result = lua_->call(entry.call);
+  for (const std::string& text : result.messages) log.event("log", text, "scenario");
+  if (result.failed) {
+    problem_ =
+        place_of(entry) + ": " + (result.messages.empty() ? "it failed" : result.messages.back());
+  } else if (!result.batch.values.empty() || !result.batch.events.empty()) {
+    hand_in(entry, result.batch, log);
+  }
+}
+
+void ScenarioCues::hand_in(const ScriptEntry& entry, const engine::EditBatch& batch, RunLog& log) {
+  const engine::EditReply reply = loop_.edits().submit(batch);
+  if (reply.accepted()) return;
+  problem_ = fmt::format("{}: the edit was refused: {}", place_of(entry), reply.reasons.front());
+  log.event("edit", "refused", reply.reasons.front());
+}
+
+// Entries may overlap: what fails comes back when the last of them ends.
+void ScenarioCues::inject(InjectedFault fault, bool on) {
+  int& entries = failing_[static_cast<std::size_t>(fault)];
+  entries += on ? 1 : -1;
+  if (entries != (on ? 1 : 0)) return;
+  if (fault == InjectedFault::planner_dropout) {
+    loop_.drop_planners(on);
+  } else {
+    hooks_.fault(fault, on);
+  }
+}
+
+void ScenarioCues::end_lasting(RunLog& log) {
+  const auto over = [&](const Lasting& lasting) {
+    if (loop_.ticks() < lasting.until) return false;
+    if (lasting.body >= 0) {
+      const std::string& body = bodies_[at(lasting.body)];
+      hooks_.hold(body, false);
+      log.event("hold", body, "off");
+    } else {
+      inject(lasting.fault, false);
+      log.event("inject", fault_word(lasting.fault), "off");
+    }
+    return true;
+  };
+  std::erase_if(lasting_, over);
+}
+
+std::int64_t ScenarioCues::ticks_of(double seconds) const {
+  return behaviors::periods_of(seconds, loop_.behavior().rate_mhz);
+}
+
+std::string ScenarioCues::place_of(const ScriptEntry& entry) const {
+  return place_in_file(scenario_, entry.mark);
+}
+
+}  // namespace footfall::lab

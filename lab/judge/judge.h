@@ -1,0 +1,92 @@
+// Judges the expectations of a scenario while it runs: looked at after every tick, outside of it,
+// without touching the run.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/tick/control_loop.h"
+#include "lab/judge/result.h"
+#include "lab/run/run.h"
+#include "lab/scenario/description.h"
+
+namespace footfall::lab {
+
+class ScenarioJudge {
+ public:
+  // Both must outlive it.
+  ScenarioJudge(const ScenarioDescription& scenario, const engine::ControlLoop& loop);
+
+  // After each tick's compute().
+  void observe();
+  // When the run has ended: one outcome for each expectation, in their order.
+  std::vector<ExpectationOutcome> finish(RunEnd end);
+  // Paths of the states that were active in the last tick that was looked at.
+  const std::string& last_state() const { return last_state_; }
+
+ private:
+  // Where something was seen.
+  struct Place {
+    std::int64_t tick = -1;  // -1: nowhere
+    std::array<int, 4> states{};
+    int count = 0;
+  };
+  // A reduction over the time of one expectation.
+  struct Sums {
+    const Reduction* of = nullptr;
+    double value = 0.0;  // in force
+    double sum = 0.0;
+    double extreme = -1e300;
+    std::int64_t samples = 0;
+    bool was_on = false;
+    Place peak;
+  };
+  struct Judged {
+    const Expectation* expectation = nullptr;
+    std::int64_t first = 0, last = 0;  // ticks of its time
+    bool at_end = false;               // a lone condition: judged once, when the run ends
+    std::vector<int> operands;         // signals it speaks of
+    std::vector<Sums> sums;
+    bool judged = false;   // at least once
+    bool holds = false;    // at the latest tick
+    bool decided = false;  // nothing can change it
+    Place place;
+    std::vector<double> values;  // of the operands, at the place
+    // Of a sequence: by length of what was passed, when that began (latest) and the entries seen.
+    std::vector<std::int64_t> begun;
+    std::vector<std::uint32_t> entries;
+    std::int64_t fastest = -1;  // ticks
+  };
+
+  Place here() const;
+  void take_signals();
+  bool evaluate(const Judged& judged);
+  void mark(Judged& judged);
+  void observe_that(Judged& judged);
+  void observe_sequence(Judged& judged);
+  void update(Sums& sums);
+  void finish_that(Judged& judged, ExpectationOutcome& out);
+  void finish_sequence(const Judged& judged, ExpectationOutcome& out);
+  void finish_end(const Judged& judged, RunEnd end, ExpectationOutcome& out) const;
+  std::string names_of(const Place& place) const;
+  void tell_place(const Place& place, ExpectationOutcome& out) const;
+  void tell_values(const Judged& judged, ExpectationOutcome& out) const;
+  double time_of(std::int64_t tick) const { return static_cast<double>(tick) * loop_.period(); }
+
+  const ScenarioDescription& scenario_;
+  const engine::ControlLoop& loop_;
+  core::SignalTable signals_;  // the run's, and the reductions behind them
+  std::vector<Judged> judged_;
+  std::int64_t tick_ = 0;
+  Place last_;
+  std::string last_state_;
+};
+
+// Whether a run that ends so has gone as it should where nothing is said: to the end of its time,
+// or to a final state.
+bool is_good_end(RunEnd end);
+// The ends that an `end:` expectation may name, in the order of kScenarioEnds.
+RunEnd scenario_end(int word);
+
+}  // namespace footfall::lab

@@ -1,0 +1,268 @@
+// Sections of the report about motion as a whole: the path from above, and a phase portrait a step
+// ([Kim16] Fig. 6: actual in blue, the planner's in red).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "lab/report/sections.h"
+
+namespace footfall::lab {
+namespace {
+
+constexpr std::size_t kPathPoints = 4000;
+constexpr std::size_t kFootsteps = 200;  // the last ones, so that long runs stay readable
+constexpr std::size_t kPortraits = 40;
+constexpr std::size_t kPortraitPoints = 60;
+constexpr double kMinPhase = 0.06;  // s on one foot that make a step
+
+double at(const std::vector<float>& column, std::size_t row) {
+  return static_cast<double>(column[row]);
+}
+
+// Phases that are steps: long enough.
+std::vector<SupportPhase> step_phases(const Log& log) {
+  std::vector<SupportPhase> phases = single_support(log);
+  std::erase_if(phases, [&](const SupportPhase& phase) {
+    return log.time[phase.end - 1] - log.time[phase.begin] < kMinPhase;
+  });
+  return phases;
+}
+
+PlaneCurve com_path(const std::vector<float>& x, const std::vector<float>& y) {
+  PlaneCurve path{"centre of mass", "actual", Mark::line, {}, 1.0};
+  const std::size_t stride = x.size() / kPathPoints + 1;
+  for (std::size_t row = 0; row < x.size(); row += stride)
+    path.points.push_back({at(x, row), at(y, row)});
+  return path;
+}
+
+// Planner's rows at the end of each step: what it said last.
+void add_plans(const Log& log, std::vector<PlaneCurve>& curves) {
+  PlaneCurve predicted{"predicted centre of mass at the switch", "plan", Mark::cross, {}, 0.9};
+  PlaneCurve targets{"foot targets", "plan", Mark::square, {}, 0.9};
+  std::vector<SupportPhase> phases = step_phases(log);
+  if (phases.size() > kFootsteps) phases.erase(phases.begin(), phases.end() - kFootsteps);
+  for (const PlannerColumns& plan : planners(log)) {
+    for (const SupportPhase& phase : phases) {
+      const std::size_t row = phase.end - 1;
+      if (plan.predicts()) {
+        const Point2 p = {at(*plan.position[0], row), at(*plan.position[1], row)};
+        if (p != Point2{0.0, 0.0}) predicted.points.push_back(p);
+      }
+      if (plan.target[0] != nullptr && plan.target[1] != nullptr) {
+        const Point2 p = {at(*plan.target[0], row), at(*plan.target[1], row)};
+        if (p != Point2{0.0, 0.0}) targets.points.push_back(p);
+      }
+    }
+  }
+  curves.push_back(std::move(targets));
+  curves.push_back(std::move(predicted));
+}
+
+// World to heading frame: as if the base had no yaw.
+Point2 turned(double x, double y, double yaw) {
+  return {std::cos(yaw) * x + std::sin(yaw) * y, -std::sin(yaw) * x + std::cos(yaw) * y};
+}
+
+// Columns that a portrait needs; `valid` if all are there.
+struct PortraitColumns {
+  const std::vector<float>*x, *y, *vx, *vy, *yaw;
+  explicit PortraitColumns(const Log& log)
+      : x(log.values("com.pos.x")),
+        y(log.values("com.pos.y")),
+        vx(log.values("com.vel.x")),
+        vy(log.values("com.vel.y")),
+        yaw(log.values("base.rpy.yaw")) {}
+  bool valid() const { return x && y && vx && vy; }
+};
+
+// What is said of one step beside the portraits.
+struct StepFact {
+  double time = 0.0;  // s, of its end
+  std::string text;
+};
+
+// Picks one step of the portraits; report_keys.js.
+std::string step_slider(const std::vector<StepFact>& facts) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const StepFact& fact : facts) list.push_back({{"t", fact.time}, {"text", fact.text}});
+  return fmt::format(
+      "<p class=\"steps\"><label for=\"step\">step</label><input type=\"range\" id=\"step\" "
+      "min=\"0\" max=\"{}\" value=\"0\" data-facts=\"{}\"><output id=\"step-facts\" for=\"step\">"
+      "</output><button id=\"step-go\">plots there</button></p>",
+      facts.size(), escape_html(list.dump()));
+}
+
+}  // namespace
+
+Section path_section(const Log& log) {
+  Section section{"path",
+                  "Path from above",
+                  "The centre of mass and the footsteps, with what the planner expected.",
+                  "",
+                  {},
+                  {}};
+  const auto* x = log.values("com.pos.x");
+  const auto* y = log.values("com.pos.y");
+  if (x == nullptr || y == nullptr) return section;
+  PlanePlot plot{"path-top", "Centre of mass and footsteps", "x, m", "y, m", {}, true, 0.1};
+  std::vector<Touchdown> touches = touchdowns(log);
+  if (touches.size() > kFootsteps) touches.erase(touches.begin(), touches.end() - kFootsteps);
+  const std::vector<std::string> feet = parts(log, "contact.", "");
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    std::string label = feet[i];
+    std::ranges::replace(label, '_', ' ');
+    PlaneCurve steps{label, i == 0 ? "c1" : "c2", Mark::ring, {}, 0.85};
+    for (const Touchdown& touch : touches) {
+      if (touch.foot == feet[i]) steps.points.push_back(touch.actual);
+    }
+    plot.curves.push_back(std::move(steps));
+  }
+  plot.curves.push_back(com_path(*x, *y));
+  add_plans(log, plot.curves);
+  const auto* goal_x = log.values("goal.x");
+  const auto* goal_y = log.values("goal.y");
+  if (goal_x != nullptr && goal_y != nullptr && log.rows() > 0) {
+    const std::size_t last = log.rows() - 1;
+    plot.curves.push_back(
+        {"goal at the end", "c3", Mark::cross, {{at(*goal_x, last), at(*goal_y, last)}}, 1.0});
+  }
+  PlanePlot near{"path-com", "Centre of mass alone", "x, m", "y, m", {}, true, 0.02};
+  near.curves.push_back(com_path(*x, *y));
+  section.planes = {std::move(plot), std::move(near)};
+  return section;
+}
+
+Section phase_section(const Log& log) {
+  Section section{
+      "phase",
+      "Phase portraits",
+      fmt::format("Velocity over position of the centre of mass, relative to the stance "
+                  "foot, one curve for each time on one foot (the last {}). Crosses: "
+                  "the planner's prediction for its end.",
+                  kPortraits),
+      "",
+      {},
+      {}};
+  const PortraitColumns columns(log);
+  std::vector<SupportPhase> phases = step_phases(log);
+  if (!columns.valid() || phases.empty()) return section;
+  if (phases.size() > kPortraits) phases.erase(phases.begin(), phases.end() - kPortraits);
+  const std::vector<std::string> feet = parts(log, "contact.", "");
+  const std::vector<PlannerColumns> plans = planners(log);
+  PlanePlot forward{"phase-x", "Forward", "x - foot, m", "velocity, m/s", {}, false, 0.02};
+  PlanePlot sideways{"phase-y", "Sideways", "y - foot, m", "velocity, m/s", {}, false, 0.02};
+  bool any_predicted = false;
+  std::vector<StepFact> facts;
+  std::vector<std::string> named;
+  for (const SupportPhase& phase : phases) {
+    const auto* foot_x = log.values("point." + phase.foot + ".x");
+    const auto* foot_y = log.values("point." + phase.foot + ".y");
+    if (foot_x == nullptr || foot_y == nullptr) continue;
+    const double yaw = columns.yaw != nullptr ? at(*columns.yaw, phase.begin) : 0.0;
+    const bool first = std::ranges::find(named, phase.foot) == named.end();
+    if (first) named.push_back(phase.foot);
+    std::string label = "on the " + phase.foot;
+    std::ranges::replace(label, '_', ' ');
+    const std::string colour = !feet.empty() && phase.foot == feet[0] ? "c1" : "c2";
+    const int step = static_cast<int>(facts.size()) + 1;
+    const PlaneCurve empty{first ? label : "", colour, Mark::line, {}, 0.55, -1, step};
+    std::array<PlaneCurve, 2> curve = {empty, empty};
+    const std::size_t stride = (phase.end - phase.begin) / kPortraitPoints + 1;
+    for (std::size_t row = phase.begin; row < phase.end; row += stride) {
+      const Point2 p = turned(at(*columns.x, row) - at(*foot_x, row),
+                              at(*columns.y, row) - at(*foot_y, row), yaw);
+      const Point2 v = turned(at(*columns.vx, row), at(*columns.vy, row), yaw);
+      for (std::size_t k = 0; k < 2; ++k) curve[k].points.push_back({p[k], v[k]});
+    }
+    forward.curves.push_back(std::move(curve[0]));
+    sideways.curves.push_back(std::move(curve[1]));
+    const std::size_t end = phase.end - 1;
+    facts.push_back({log.time[end], fmt::format("{} of {}, on the {} until {:.3f} s", step,
+                                                phases.size(), phase.foot, log.time[end])});
+    if (plans.empty() || !plans[0].predicts()) continue;
+    const Point2 p = {at(*plans[0].position[0], end), at(*plans[0].position[1], end)};
+    if (p == Point2{0.0, 0.0}) continue;  // nothing was planned yet
+    const Point2 q = turned(p[0] - at(*foot_x, end), p[1] - at(*foot_y, end), yaw);
+    const Point2 v = turned(at(*plans[0].velocity[0], end), at(*plans[0].velocity[1], end), yaw);
+    for (std::size_t k = 0; k < 2; ++k) {
+      PlaneCurve& to = k == 0 ? forward.curves.emplace_back() : sideways.curves.emplace_back();
+      to = {any_predicted ? "" : "predicted for the switch",
+            "plan",
+            Mark::cross,
+            {{q[k], v[k]}},
+            0.9,
+            -1,
+            step};
+    }
+    any_predicted = true;
+    const Point2 reached =
+        turned(at(*columns.x, end) - at(*foot_x, end), at(*columns.y, end) - at(*foot_y, end), yaw);
+    facts.back().text += fmt::format("; there, from the prediction: x {:+.1f} mm, y {:+.1f} mm",
+                                     1e3 * (reached[0] - q[0]), 1e3 * (reached[1] - q[1]));
+  }
+  section.html = step_slider(facts);
+  section.planes = {std::move(forward), std::move(sideways)};
+  return section;
+}
+
+Section planner_section(const Log& log) {
+  Section section{"planner",
+                  "Planned and actual footsteps",
+                  "Touchdown minus the last planned target, and the planner's targets over time.",
+                  "",
+                  {},
+                  {}};
+  PlanePlot scatter{"foot-error", "Touchdown minus target", "x, mm", "y, mm", {}, true, 4.0};
+  PlanePlot by_step{"foot-error-steps", "Distance to the target", "step", "mm", {}, false, 1.0};
+  const std::vector<std::string> feet = parts(log, "contact.", "");
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    std::string label = feet[i];
+    std::ranges::replace(label, '_', ' ');
+    scatter.curves.push_back({label, i == 0 ? "c1" : "c2", Mark::dot, {}, 0.9});
+    by_step.curves.push_back({label, i == 0 ? "c1" : "c2", Mark::dot, {}, 0.9});
+  }
+  double sum = 0.0, worst = 0.0;
+  int count = 0, step = 0;
+  for (const Touchdown& touch : touchdowns(log)) {
+    ++step;
+    if (!touch.planned) continue;
+    const double dx = 1e3 * (touch.actual[0] - touch.target[0]);
+    const double dy = 1e3 * (touch.actual[1] - touch.target[1]);
+    const auto foot = static_cast<std::size_t>(std::ranges::find(feet, touch.foot) - feet.begin());
+    scatter.curves[foot].points.push_back({dx, dy});
+    by_step.curves[foot].points.push_back({static_cast<double>(step), std::hypot(dx, dy)});
+    sum += std::hypot(dx, dy);
+    worst = std::max(worst, std::hypot(dx, dy));
+    ++count;
+  }
+  if (count > 0) {
+    section.lead += fmt::format(" Mean distance {:.1f} mm, largest {:.1f} mm over {} steps.",
+                                sum / count, worst, count);
+    section.planes = {std::move(scatter), std::move(by_step)};
+  }
+  for (const PlannerColumns& plan : planners(log)) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (plan.target[k] == nullptr) continue;
+      const std::string axis = k == 0 ? "x" : "y";
+      TimePlot plot{"plan-" + plan.name + "-" + axis,
+                    "Target of " + plan.name + ", " + axis,
+                    "m",
+                    {{"planned", "plan", *plan.target[k], false}},
+                    false};
+      for (std::size_t i = 0; i < feet.size() && i < 2; ++i) {
+        const auto* point = log.values("point." + feet[i] + "." + axis);
+        if (point == nullptr) continue;
+        std::string label = feet[i];
+        std::ranges::replace(label, '_', ' ');
+        plot.curves.push_back({label, i == 0 ? "c1" : "c2", *point, false});
+      }
+      section.plots.push_back(std::move(plot));
+    }
+  }
+  return section;
+}
+
+}  // namespace footfall::lab

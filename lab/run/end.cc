@@ -1,0 +1,141 @@
+// The end of a run in words; see end.h.
+#include "lab/run/end.h"
+
+#include <fmt/format.h>
+
+namespace footfall::lab {
+namespace {
+
+using core::Fault;
+using engine::ControlLoop;
+
+std::string state_paths(const ControlLoop& loop, std::span<const int> states) {
+  std::string paths;
+  for (const int s : states) {
+    paths += (paths.empty() ? "" : ", ") + loop.behavior().states[static_cast<std::size_t>(s)].path;
+  }
+  return paths;
+}
+
+const char* unit_of(Fault fault) { return fault == Fault::joint_limit ? "rad" : "Nm"; }
+
+// A fall by its first criterion that holds, with the words for it.
+std::string judge_fall(const ControlLoop& loop, EndCause& cause) {
+  const engine::FallCriteria fall =
+      engine::judge_fall(loop.behavior().robot, loop.sensors(), loop.model());
+  const auto measured = [&](const char* criterion, double value, double limit, const char* unit) {
+    cause.criterion = criterion;
+    cause.value = value;
+    cause.limit = limit;
+    cause.unit = unit;
+  };
+  if (fall.low) {
+    measured("height", fall.height, fall.height_limit, "m");
+    return fmt::format(
+        "torso {:.3f} m above the lowest foot, below {:.0f} % of its standing height", fall.height,
+        loop.behavior().robot.height_limit * 100.0);
+  }
+  if (fall.tilted) {
+    measured("tilt", fall.tilt, fall.tilt_limit, "rad");
+    return fmt::format("tilt {:.2f} rad, beyond {:.2f} rad", fall.tilt, fall.tilt_limit);
+  }
+  cause.criterion = "body_contact";
+  return "a body that is no foot touched something";
+}
+
+std::string judge_swing(const ControlLoop& loop, int foot, EndCause& cause) {
+  cause.criterion = "swing";
+  cause.limit = StepCounter::kMaxSwing;
+  cause.unit = "s";
+  cause.subject = loop.behavior().robot.contacts[static_cast<std::size_t>(foot)].name;
+  return fmt::format("{} in the air for more than {:g} s", cause.subject, StepCounter::kMaxSwing);
+}
+
+std::string judge_fault(const ControlLoop& loop, Fault fault, EndCause& cause) {
+  cause.criterion = std::string(core::fault_name(fault));
+  const engine::FaultPlace& place = loop.last_place(fault);
+  if (place.joint < 0) return "fault " + cause.criterion;
+  cause.subject = loop.behavior().robot.joints[static_cast<std::size_t>(place.joint)].name;
+  cause.value = place.value;
+  cause.unit = unit_of(fault);
+  return fmt::format("fault {}: {}", cause.criterion, place_text(loop, fault, place));
+}
+
+}  // namespace
+
+const char* run_end_name(RunEnd end) {
+  switch (end) {
+    case RunEnd::steps:
+      return "steps";
+    case RunEnd::time:
+      return "time";
+    case RunEnd::fall:
+      return "fall";
+    case RunEnd::fault:
+      return "fault";
+    case RunEnd::stopped:
+      return "stopped";
+    case RunEnd::finished:
+      return "finished";
+  }
+  return "time";
+}
+
+const char* run_end_text(RunEnd end) {
+  switch (end) {
+    case RunEnd::steps:
+      return "all steps made";
+    case RunEnd::time:
+      return "time is up";
+    case RunEnd::fall:
+      return "the robot FELL";
+    case RunEnd::fault:
+      return "stopped by a fault";
+    case RunEnd::stopped:
+      return "stopped by hand";
+    case RunEnd::finished:
+      return "finished (the behavior reached its final state)";
+  }
+  return "";
+}
+
+EndCause explain_end(const ControlLoop& loop, const StepCounter& counter,
+                     std::span<const int> states) {
+  EndCause cause;
+  cause.time = loop.time();
+  cause.states = state_paths(loop, states);
+  const Fault fault = loop.ended_by();
+  std::string what;
+  if (fault == Fault::fall) {
+    what = judge_fall(loop, cause);
+  } else if (fault != Fault::count) {
+    what = judge_fault(loop, fault, cause);
+  } else {
+    what = judge_swing(loop, counter.long_swing_foot(), cause);
+  }
+  cause.text = fmt::format("{}, at {:.3f} s in {}", what, cause.time,
+                           cause.states.empty() ? "no state" : cause.states);
+  return cause;
+}
+
+std::string place_text(const ControlLoop& loop, Fault fault, const engine::FaultPlace& place) {
+  if (place.joint < 0) return {};
+  return fmt::format("{} {:.{}f} {}",
+                     loop.behavior().robot.joints[static_cast<std::size_t>(place.joint)].name,
+                     place.value, fault == Fault::joint_limit ? 3 : 1, unit_of(fault));
+}
+
+std::vector<WorstFault> worst_faults(const ControlLoop& loop) {
+  std::vector<WorstFault> worst;
+  for (int i = 0; i < core::kFaultCount; ++i) {
+    const auto fault = static_cast<Fault>(i);
+    const engine::FaultPlace& place = loop.worst_place(fault);
+    if (place.joint < 0) continue;
+    worst.push_back({fault,
+                     loop.behavior().robot.joints[static_cast<std::size_t>(place.joint)].name,
+                     place.value, unit_of(fault)});
+  }
+  return worst;
+}
+
+}  // namespace footfall::lab

@@ -1,0 +1,184 @@
+// Files and settings of a run; see log_setup.h.
+#include "lab/run/log_setup.h"
+
+#include <elf.h>
+#include <fmt/format.h>
+#include <link.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <stdexcept>
+
+#include "core/yaml/yaml.h"
+#include "lab/run/run_log.h"
+
+namespace footfall::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string absolute(const std::string& path) {
+  return path.empty() ? path : fs::absolute(path).lexically_normal().string();
+}
+
+class Collector {
+ public:
+  std::vector<engine::LogFile> files;
+
+  // A YAML file and its bases.
+  void add_yaml(const std::string& path) {
+    if (path.empty()) return;
+    core::Diagnostics diagnostics;
+    core::load_yaml_with_base(path, diagnostics);
+    for (int i = 0; i < diagnostics.file_count(); ++i) add(diagnostics.file(i), "application/yaml");
+  }
+
+  void add_text(const std::string& path, const std::string& media_type, std::string text) {
+    const std::string name = absolute(path);
+    if (has(name)) return;
+    files.push_back({name, media_type, std::move(text)});
+  }
+
+  // A model, and what it names by `file="..."`: other models and meshes.
+  void add_model(const std::string& path) {
+    if (path.empty() || has(absolute(path)) || !add(path, "application/xml")) return;
+    const std::string text = files.back().content;  // add() may move it
+    const fs::path folder = fs::path(absolute(path)).parent_path();
+    std::vector<fs::path> folders = {folder};
+    static const std::regex kFolders(R"re((?:mesh|texture|asset)dir\s*=\s*"([^"]*)")re");
+    static const std::regex kFiles(R"re(\bfile(?:name)?\s*=\s*"([^"]*)")re");
+    for (std::sregex_iterator it(text.begin(), text.end(), kFolders), end; it != end; ++it) {
+      folders.push_back(folder / (*it)[1].str());
+    }
+    for (std::sregex_iterator it(text.begin(), text.end(), kFiles), end; it != end; ++it) {
+      for (const fs::path& from : folders) {
+        const std::string file = (from / (*it)[1].str()).string();
+        if (file.ends_with(".xml")) {
+          add_model(file);
+        } else {
+          add(file, "application/octet-stream");
+        }
+      }
+    }
+  }
+
+ private:
+  bool has(const std::string& path) const {
+    return std::ranges::any_of(files, [&](const auto& file) { return file.path == path; });
+  }
+
+  bool add(const std::string& path, const std::string& media_type) {
+    const std::string name = absolute(path);
+    std::error_code error;
+    if (has(name) || !fs::is_regular_file(name, error)) return false;
+    std::ifstream in(name, std::ios::binary);
+    files.push_back({name, media_type, {std::istreambuf_iterator<char>(in), {}}});
+    return true;
+  }
+};
+
+}  // namespace
+
+std::vector<engine::LogFile> source_files(const behaviors::Behavior& behavior,
+                                          const std::string& world_file) {
+  Collector collector;
+  collector.add_yaml(behavior.path);
+  for (const std::string& file : behavior.files) collector.add_yaml(file);
+  for (const behaviors::ScriptFile& script : behavior.scripts) {
+    collector.add_text(script.path, "text/x-lua", script.text);
+  }
+  collector.add_yaml(behavior.robot.path);
+  collector.add_model(behavior.robot.model_path);
+  collector.add_yaml(world_file);
+  return std::move(collector.files);
+}
+
+std::string setup_text(const behaviors::Behavior& behavior, const LogSource& source) {
+  const engine::LoopSettings& s = source.settings;
+  nlohmann::ordered_json json;
+  json["behavior_file"] = absolute(behavior.path);
+  json["robot_file"] = absolute(behavior.robot.path);
+  json["world_file"] = absolute(source.world_file);
+  json["set"] = source.set;
+  json["seed"] = s.seed;
+  json["lockstep"] = s.lockstep;
+  json["planner_latency"] = s.planner_latency;
+  json["mass_scale"] = s.deviation.mass_scale;
+  json["com_shift"] = s.deviation.com_shift;
+  json["surface"] = nlohmann::json::array();
+  for (const model::SurfaceRamp& ramp : s.surface.ramps) {
+    json["surface"].push_back({ramp.from, ramp.to, ramp.rise});
+  }
+  json["script_access"] = {{"files", s.script_access.files},
+                           {"processes", s.script_access.processes}};
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string setup_text(const std::string& text, const LogContinuation& continues) {
+  auto json = nlohmann::ordered_json::parse(text);
+  json["continues"] = {
+      {"number", continues.number}, {"back", continues.back}, {"proven", continues.proven}};
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+RunSetup read_setup(const std::string& text) {
+  RunSetup setup;
+  try {
+    const auto json = nlohmann::json::parse(text);
+    setup.behavior_file = json.at("behavior_file");
+    setup.robot_file = json.at("robot_file");
+    json.at("set").get_to(setup.set);
+    engine::LoopSettings& s = setup.settings;
+    json.at("seed").get_to(s.seed);
+    json.at("lockstep").get_to(s.lockstep);
+    json.at("planner_latency").get_to(s.planner_latency);
+    json.at("mass_scale").get_to(s.deviation.mass_scale);
+    json.at("com_shift").get_to(s.deviation.com_shift);
+    for (const auto& ramp : json.at("surface")) {
+      s.surface.ramps.push_back({ramp.at(0), ramp.at(1), ramp.at(2)});
+    }
+    if (json.contains("continues")) {
+      const auto& from = json.at("continues");
+      setup.continues = {from.at("number"), from.at("back"), from.at("proven")};
+    }
+    s.script_access = {json.at("script_access").at("files"),
+                       json.at("script_access").at("processes")};
+  } catch (const nlohmann::json::exception&) {
+    throw std::runtime_error("the log does not say how its run was set up, so it has no replay");
+  }
+  return setup;
+}
+
+std::string build_id() {
+  std::string id;
+  const auto visit = [](dl_phdr_info* info, std::size_t, void* to) {
+    for (int i = 0; i < info->dlpi_phnum; ++i) {
+      const ElfW(Phdr)& header = info->dlpi_phdr[i];
+      if (header.p_type != PT_NOTE) continue;
+      const auto* at = reinterpret_cast<const char*>(info->dlpi_addr + header.p_vaddr);
+      const char* end = at + header.p_memsz;
+      while (at + sizeof(ElfW(Nhdr)) <= end) {
+        ElfW(Nhdr) note;
+        std::memcpy(&note, at, sizeof note);
+        const char* name = at + sizeof note;
+        const char* bytes = name + (note.n_namesz + 3) / 4 * 4;
+        at = bytes + (note.n_descsz + 3) / 4 * 4;
+        if (note.n_type != NT_GNU_BUILD_ID || std::memcmp(name, "GNU", 4) != 0) continue;
+        for (unsigned k = 0; k < note.n_descsz; ++k) {
+          *static_cast<std::string*>(to) +=
+              fmt::format("{:02x}", static_cast<unsigned char>(bytes[k]));
+        }
+      }
+    }
+    return 1;  // the first object is the program
+  };
+  ::dl_iterate_phdr(visit, &id);
+  return id;
+}
+
+}  // namespace footfall::lab

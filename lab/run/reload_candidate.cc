@@ -1,0 +1,120 @@
+// Loading and checking beside the run; see reload_candidate.h.
+#include "lab/run/reload_candidate.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "behaviors/check/physics/check.h"
+#include "lab/run/log_setup.h"
+
+namespace footfall::lab {
+namespace {
+
+constexpr int kMostAttempts = 10;
+
+// As `footfall check` does.
+std::shared_ptr<const behaviors::Behavior> load_checked(const std::string& path,
+                                                        const behaviors::LoadOptions& options,
+                                                        core::Diagnostics& diagnostics) {
+  std::shared_ptr<const behaviors::Behavior> behavior =
+      behaviors::load_behavior(path, options, diagnostics);
+  if (behavior == nullptr || !behavior->has_robot) return behavior;
+  try {
+    behaviors::check_physics(*behavior, diagnostics);
+  } catch (const std::exception& error) {
+    diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
+  }
+  return behavior;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// A file that is saved again while it is read is read again: half of it is nobody's mistake.
+std::shared_ptr<const behaviors::Behavior> load_settled(const std::string& path,
+                                                        const behaviors::LoadOptions& options,
+                                                        core::Diagnostics& diagnostics) {
+  for (int attempt = 1;; ++attempt) {
+    core::Diagnostics found;
+    const std::string before = text_of(path);
+    auto behavior = load_checked(path, options, found);
+    if (attempt < kMostAttempts && text_of(path) != before) continue;
+    diagnostics = std::move(found);
+    return behavior;
+  }
+}
+
+// The first file of the robot that is not as it was.
+std::string changed_file(const FileDigests& before, const FileDigests& now) {
+  for (const auto& [path, digest] : now) {
+    const auto found = before.find(path);
+    if (found == before.end() || found->second != digest) return path;
+  }
+  return "";
+}
+
+}  // namespace
+
+FileDigests robot_files(const behaviors::Behavior& behavior) {
+  FileDigests digests;
+  behaviors::Behavior robot_alone;
+  robot_alone.robot.path = behavior.robot.path;
+  robot_alone.robot.model_path = behavior.robot.model_path;
+  for (const engine::LogFile& file : source_files(robot_alone, "")) {
+    digests[file.path] = std::hash<std::string>{}(file.content);
+  }
+  return digests;
+}
+
+ReloadCandidate prepare_reload(const std::string& path,
+                               std::shared_ptr<const behaviors::Behavior> from,
+                               const FileDigests& robot, const ReloadSetup& setup) {
+  ReloadCandidate candidate;
+  candidate.path = path;
+  core::Diagnostics diagnostics;
+  candidate.behavior = load_settled(path, setup.load, diagnostics);
+  for (int k = 0; k < diagnostics.file_count(); ++k) candidate.files.push_back(diagnostics.file(k));
+  if (setup.print && !diagnostics.all().empty()) setup.print(diagnostics);
+  if (diagnostics.has_errors() || candidate.behavior == nullptr) {
+    candidate.reasons.push_back(fmt::format("it has {} error{}", diagnostics.error_count(),
+                                            diagnostics.error_count() == 1 ? "" : "s"));
+    return candidate;
+  }
+  const behaviors::Behavior& behavior = *candidate.behavior;
+  for (const behaviors::ScriptFile& script : behavior.scripts)
+    candidate.files.push_back(script.path);
+  aim_reload(candidate, std::move(from));
+  const std::string changed = changed_file(robot, robot_files(behavior));
+  if (candidate.reasons.empty() && !changed.empty()) {
+    candidate.reasons.push_back(fmt::format(
+        "the robot's '{}' has changed: a reload changes the behavior alone, start anew for this",
+        changed));
+  }
+  if (!candidate.reasons.empty()) return candidate;
+  try {
+    candidate.loop =
+        std::make_unique<engine::ControlLoop>(behavior, *setup.hardware, setup.source.settings);
+  } catch (const std::exception& error) {
+    candidate.reasons.emplace_back(error.what());
+    return candidate;
+  }
+  if (!setup.folder.empty()) candidate.header = make_log_header(behavior, setup.source);
+  return candidate;
+}
+
+void aim_reload(ReloadCandidate& candidate, std::shared_ptr<const behaviors::Behavior> from) {
+  candidate.there = behaviors::map_take_over(*from, *candidate.behavior);
+  candidate.back = behaviors::map_take_over(*candidate.behavior, *from);
+  candidate.reasons =
+      behaviors::reasons_against_take_over(*from, *candidate.behavior, candidate.there);
+  candidate.from = std::move(from);
+}
+
+}  // namespace footfall::lab

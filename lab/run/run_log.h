@@ -1,0 +1,57 @@
+// Writes a run into its log: every tick with what came from outside, and an event for each
+// transition, mark, step, plan and fault. Called between control and backend, outside its timing.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/log/writer.h"
+#include "engine/tick/control_loop.h"
+#include "lab/run/step_counter.h"
+
+namespace footfall::lab {
+
+class RunLog {
+ public:
+  using Said = std::function<void(double time, const std::string& text)>;
+  // Before the loop starts. log may be null: then only state_name() does anything, and `said`, if
+  // there is one, is told what `log:` actions and scripts say.
+  RunLog(engine::ControlLoop& loop, engine::LogWriter* log, Said said = nullptr);
+  void after_start();
+  void after_tick(const StepEvent& step);
+  void event(std::string_view kind, std::string_view name, std::string_view detail);
+  std::string state_name() const;
+
+ private:
+  void write_edits();
+  void write_texts();
+  void say(const std::string& text, std::string_view from);
+  void write_plans();
+  bool write_faults();
+  engine::ControlLoop& loop_;
+  engine::LogWriter* log_;
+  Said said_;
+  engine::InputTrace trace_;
+  core::FaultCounters seen_faults_;
+  std::vector<std::array<double, 3>> last_targets_;
+};
+
+// What a run was made from besides its behavior.
+struct LogSource {
+  std::string world = "flat", backend = "mujoco";
+  std::string world_file;  // empty: none
+  engine::LoopSettings settings;
+  std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE
+  std::string command;                                   // as it was typed, for people
+  double friction = 0.0;                                 // of the ground; 0: unknown
+  int row_every = 6;                                     // ticks; 1: derived signals of all ticks
+};
+
+// The log's header: behavior, robot, world, seed, states, and all files it was loaded from.
+engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const LogSource& source);
+
+}  // namespace footfall::lab

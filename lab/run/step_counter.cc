@@ -1,0 +1,51 @@
+// Steps from contacts and foot heights; see step_counter.h.
+#include "lab/run/step_counter.h"
+
+#include <algorithm>
+
+namespace footfall::lab {
+
+StepEvent StepCounter::observe(const bool* contact, const double* height) noexcept {
+  StepEvent event;
+  int standing = 0;
+  for (int f = 0; f < feet_; ++f) standing += contact[f] ? 1 : 0;
+  for (int f = 0; f < feet_; ++f) {
+    Foot& foot = feet_state_[static_cast<std::size_t>(f)];
+    foot.landed = false;
+    if (first_) {
+      foot.in_contact = contact[f];
+      foot.lift_height = height[f];
+    }
+    if (!contact[f]) {
+      if (foot.in_contact) {  // a bounce after touchdown keeps the step that is pending
+        foot.in_contact = false;
+        foot.air_ticks = 0;
+        foot.lift_height = height[f];
+        foot.rise = 0.0;
+      }
+      ++foot.air_ticks;
+      if (foot.air_ticks * period_ >= kMinFlight) foot.pending = false;
+      foot.rise = std::max(foot.rise, height[f] - foot.lift_height);
+      if (foot.air_ticks * period_ > kMaxSwing) long_swing_ = f;
+    } else if (!foot.in_contact) {
+      foot.in_contact = true;
+      // Half a period of tolerance: 60 ms is a whole number of ticks at most rates.
+      const bool swung = (foot.air_ticks + 0.5) * period_ >= kMinFlight && foot.rise >= kMinRise;
+      if (swung) {
+        foot.pending = foot.landed = true;
+        foot.swing_time = foot.air_ticks * period_;
+        foot.swing_rise = foot.rise;
+      }
+    }
+    if (foot.pending && contact[f] && standing == 1) {
+      foot.pending = false;
+      ++steps_;
+      worst_clearance_ = std::min(worst_clearance_, foot.swing_rise);
+      event = {f, foot.swing_time, foot.swing_rise};
+    }
+  }
+  first_ = false;
+  return event;
+}
+
+}  // namespace footfall::lab

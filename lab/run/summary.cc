@@ -1,0 +1,204 @@
+// JSON and text of a run's figures; see summary.h.
+#include "lab/run/summary.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace footfall::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json error_json(const ErrorFigure& e) {
+  if (e.count == 0) return nullptr;
+  return {{"rms", e.rms()}, {"max", e.max}};
+}
+
+Json faults_json(const core::FaultCounters& faults) {
+  Json out = Json::object();
+  for (int i = 0; i < core::kFaultCount; ++i) {
+    const auto fault = static_cast<core::Fault>(i);
+    if (faults.of(fault) > 0) out[std::string(core::fault_name(fault))] = faults.of(fault);
+  }
+  return out;
+}
+
+Json internal_json(const RunFigures& figures) {
+  Json out = Json::object();
+  for (const auto& [name, force] : figures.internal) {
+    const double reference = std::abs(force.reference);
+    out[name] = {{"rms", force.error.rms()},
+                 {"max", force.error.max},
+                 {"relative_rms", reference > 0.0 ? Json(force.error.rms() / reference) : Json()}};
+  }
+  return out;
+}
+
+Json worst_json(const RunResult& result) {
+  Json out = Json::object();
+  for (const WorstFault& worst : result.worst) {
+    out[std::string(core::fault_name(worst.fault))] = {{"joint", worst.joint},
+                                                       {worst.unit, worst.value}};
+  }
+  return out;
+}
+
+Json cause_json(const RunResult& result) {
+  if (!result.cause) return nullptr;
+  const EndCause& cause = *result.cause;
+  return {{"criterion", cause.criterion},
+          {"subject", cause.subject.empty() ? Json() : Json(cause.subject)},
+          {"value", cause.value ? Json(*cause.value) : Json()},
+          {"limit", cause.limit ? Json(*cause.limit) : Json()},
+          {"unit", cause.unit.empty() ? Json() : Json(cause.unit)},
+          {"time_s", cause.time},
+          {"states", cause.states},
+          {"text", cause.text}};
+}
+
+double moved(const RunFigures& f) {
+  return std::hypot(f.end[0] - f.start[0], f.end[1] - f.start[1]);
+}
+
+std::string motion_text(const RunFigures& f) {
+  return fmt::format(
+      "  moved        {:.3f} m: CoM from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}) m, path {:.3f} m\n",
+      moved(f), f.start[0], f.start[1], f.end[0], f.end[1], f.path_length);
+}
+
+std::string torque_text(const RunFigures& f) {
+  std::string text = "  torque       ";
+  if (f.roll.count > 0) {
+    text += fmt::format("peak {:.1f} Nm, largest step between ticks {:.2f} Nm", f.peak_torque,
+                        f.max_torque_step);
+  } else {
+    text += fmt::format("not counted before {:g} s", kSettledAfter);
+  }
+  if (f.end_torque_step > 0.0) {
+    text += fmt::format("; {:.2f} Nm as the run ended", f.end_torque_step);
+  }
+  return text + "\n";
+}
+
+std::string faults_text(const RunResult& result) {
+  std::string text;
+  for (int i = 0; i < core::kFaultCount; ++i) {
+    const auto fault = static_cast<core::Fault>(i);
+    if (result.faults.of(fault) == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", core::fault_name(fault),
+                        result.faults.of(fault));
+    for (const WorstFault& worst : result.worst) {
+      if (worst.fault != fault) continue;
+      text += fmt::format(" (worst {} {:.3g} {})", worst.joint, worst.value, worst.unit);
+    }
+  }
+  return fmt::format("  faults       {}\n", text.empty() ? "none" : text);
+}
+
+Json tick_json(const core::TimingHistogram& h) {
+  return {{"p50", h.percentile(0.5) * 1e-3},
+          {"p99", h.percentile(0.99) * 1e-3},
+          {"p999", h.percentile(0.999) * 1e-3}};
+}
+
+}  // namespace
+
+Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_only) {
+  const RunFigures& f = result.figures;
+  Json out;
+  out["behavior"] = id.behavior;
+  out["robot"] = id.robot;
+  out["world"] = id.world;
+  out["backend"] = id.backend;
+  out["seed"] = id.seed;
+  out["end"] = result.end == RunEnd::finished ? "stopped" : run_end_name(result.end);
+  out["steps"] = f.steps;
+  out["time_s"] = f.time;
+  out["fell"] = f.fell;
+  out["error"] = {{"roll", error_json(f.roll)},
+                  {"pitch", error_json(f.pitch)},
+                  {"yaw", error_json(f.yaw)},
+                  {"height", error_json(f.height)}};
+  out["foot_placement_m"] =
+      f.placements > 0 ? Json{{"mean", f.placement_mean}, {"max", f.placement_max}} : Json();
+  const bool settled = f.roll.count > 0;  // the run was long enough for these to count
+  out["max_torque_step_Nm"] = settled ? Json(f.max_torque_step) : Json();
+  out["peak_torque_Nm"] = settled ? Json(f.peak_torque) : Json();
+  out["goal_error_m"] = f.steps > 0 ? Json(f.goal_error) : Json();
+  out["path_length_m"] = f.path_length;
+  out["internal_force"] = internal_json(f);
+  out["faults"] = faults_json(result.faults);
+  out["start_m"] = f.start;
+  out["end_m"] = f.end;
+  out["moved_m"] = moved(f);
+  out["cause"] = cause_json(result);
+  out["worst_fault"] = worst_json(result);
+  const bool let_go = result.end == RunEnd::finished || result.cause.has_value();
+  out["end_torque_step_Nm"] = settled && let_go ? Json(f.end_torque_step) : Json();
+  out["max_distance_m"] = f.max_distance;
+  out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
+  out["clearance_min_m"] = f.steps > 0 ? Json(f.worst_clearance) : Json();
+  out["mean_step_time_s"] = f.steps > 1 ? Json(f.mean_step_time) : Json();
+  if (!physics_only) {
+    out["tick_us"] = tick_json(result.tick_time);
+    out["allocations"] = result.allocations >= 0 ? Json(result.allocations) : Json();
+    out["real_time_factor"] = result.real_time_factor;
+    out["log"] = id.log.empty() ? Json() : Json(id.log);
+  }
+  return out;
+}
+
+Json timing_json(const RunResult& result) {
+  Json out;
+  out["tick_us"] = tick_json(result.tick_time);
+  out["tick_us"]["max"] = static_cast<double>(result.tick_time.max_ns()) * 1e-3;
+  out["ticks"] = result.tick_time.count();
+  out["wall_time_s"] = result.wall_time;
+  out["real_time_factor"] = result.real_time_factor;
+  Json percentiles = Json::array();
+  for (const double p : {0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 0.999, 0.9999, 1.0}) {
+    percentiles.push_back({{"part", p}, {"us", result.tick_time.percentile(p) * 1e-3}});
+  }
+  out["percentiles"] = percentiles;
+  return out;
+}
+
+std::string summary_text(const RunIdentity& id, const RunResult& result) {
+  const RunFigures& f = result.figures;
+  const auto deg = [](double rad) { return rad * 180.0 / M_PI; };
+  std::string text = fmt::format("{} · {} · {} · {} · seed {}\n", id.behavior, id.robot, id.world,
+                                 id.backend, id.seed);
+  text += fmt::format("  end          {} after {:.2f} s, {} step{}\n", run_end_text(result.end),
+                      f.time, f.steps, f.steps == 1 ? "" : "s");
+  if (result.cause) text += fmt::format("  cause        {}\n", result.cause->text);
+  text += motion_text(f);
+  if (f.height.count > 0) {
+    text += fmt::format("  orientation  roll {:.2f}°  pitch {:.2f}°  yaw {:.2f}° (largest error)\n",
+                        deg(f.roll.max), deg(f.pitch.max), deg(f.yaw.max));
+    text += fmt::format("  CoM height   {:.2f} mm rms, {:.2f} mm largest error\n",
+                        f.height.rms() * 1e3, f.height.max * 1e3);
+  }
+  if (f.steps > 1) {
+    text += fmt::format(
+        "  steps        {:.3f} s each, clearance {:.1f} cm at least, goal error {:.3f} m\n",
+        f.mean_step_time, f.worst_clearance * 100.0, f.goal_error);
+  }
+  if (f.placements > 0) {
+    text += fmt::format("  footsteps    {:.1f} mm mean, {:.1f} mm largest from the plan\n",
+                        f.placement_mean * 1e3, f.placement_max * 1e3);
+  }
+  text += torque_text(f);
+  for (const auto& [name, force] : f.internal) {
+    text +=
+        fmt::format("  {}  {:.1f} N rms from {:.1f} N\n", name, force.error.rms(), force.reference);
+  }
+  text += faults_text(result);
+  text += fmt::format("  tick         {:.1f} us median, {:.1f} us p99.9; {:.0f} x real time\n",
+                      result.tick_time.percentile(0.5) * 1e-3,
+                      result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);
+  if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
+  return text;
+}
+
+}  // namespace footfall::lab

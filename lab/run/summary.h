@@ -1,0 +1,27 @@
+// A run's summary: one JSON object for scripts, a short text for people, and the file of what only
+// a wall clock knows.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "lab/run/run.h"
+
+namespace footfall::lab {
+
+struct RunIdentity {
+  std::string behavior, robot, world, backend;
+  std::uint64_t seed = 0;
+  std::string log;      // path, empty: none
+  std::string physics;  // one line: what is behind the figures
+};
+
+// `physics_only` leaves out what a wall clock measured (tick_us, real_time_factor).
+nlohmann::ordered_json summary_json(const RunIdentity& id, const RunResult& result,
+                                    bool physics_only = false);
+std::string summary_text(const RunIdentity& id, const RunResult& result);
+// tick_us, wall time and the histogram of tick times.
+nlohmann::ordered_json timing_json(const RunResult& result);
+
+}  // namespace footfall::lab

@@ -1,0 +1,51 @@
+// A golden trace: some signals of a run at a low rate, as a CSV file that people can read and
+// compare line by line: `time,state,SIGNAL,...`, SI, an empty field where a signal has no value.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/tick/control_loop.h"
+#include "lab/scenario/description.h"
+
+namespace footfall::lab {
+
+struct GoldenRow {
+  double time = 0.0;  // s
+  std::string state;  // paths of the active atomic states
+  std::vector<double> values;
+};
+
+struct GoldenTrace {
+  std::vector<std::string> signals;  // names
+  std::vector<GoldenRow> rows;
+};
+
+// Throws std::runtime_error `PATH:LINE: error: ...` if the file is not that.
+GoldenTrace read_golden(const std::string& path);
+// With as many digits as the tolerances need: a hundredth of each. Whole or not at all; throws
+// std::runtime_error if it cannot be written.
+void write_golden(const std::string& path, const GoldenSpec& spec, const GoldenTrace& trace);
+
+// The first value beyond its tolerance: which signal, when, in which state, what it is and was to
+// be; empty if there is none. Signals that only one of the two has and a different length are
+// differences, too.
+std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,
+                           const GoldenTrace& expected, const GoldenTrace& got);
+
+// Gathers the trace of a run, after each tick's compute().
+class GoldenRecorder {
+ public:
+  GoldenRecorder(const GoldenSpec& spec, const engine::ControlLoop& loop);
+  void observe();
+  const GoldenTrace& trace() const { return trace_; }
+
+ private:
+  const GoldenSpec& spec_;
+  const engine::ControlLoop& loop_;
+  std::int64_t every_;  // ticks
+  GoldenTrace trace_;
+};
+
+}  // namespace footfall::lab

@@ -1,0 +1,179 @@
+// Runs the children of a suite; see run.h.
+#include "lab/suite/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <stdexcept>
+
+#include "lab/run/utc_time.h"
+
+namespace footfall::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A run that is slower than this has stopped: it is about ten times as fast as the clock.
+constexpr double kTimeoutBase = 60.0, kTimeoutPerSecond = 3.0;
+constexpr double kReportTimeout = 120.0;                   // s
+constexpr double kReportBefore = 1.5, kReportAfter = 0.5;  // s around the moment
+
+// The name as the name of a folder.
+std::string folder_name(std::string name) {
+  for (char& c : name) {
+    if (c == '/' || c == '\\') c = '.';
+  }
+  return name.empty() || name.front() == '.' ? "_" + name : name;
+}
+
+void list_runs(Suite& suite, const SuiteSettings& settings) {
+  suite.runs.clear();
+  for (std::size_t s = 0; s < suite.scenarios.size(); ++s) {
+    const SuiteScenario& scenario = suite.scenarios[s];
+    if (!scenario.errors.empty()) continue;
+    for (const std::uint64_t seed : scenario.seeds) {
+      SuiteRun run;
+      run.scenario = s;
+      run.seed = seed;
+      run.folder = fmt::format("{}/{}/seed-{}", settings.out, folder_name(scenario.name), seed);
+      suite.runs.push_back(std::move(run));
+    }
+  }
+}
+
+Command command_of(const SuiteScenario& scenario, const SuiteRun& run,
+                   const SuiteSettings& settings) {
+  const double timeout = settings.timeout > 0.0
+                             ? settings.timeout
+                             : kTimeoutBase + kTimeoutPerSecond * scenario.duration;
+  return {{settings.program, "run", scenario.path, "--seed", std::to_string(run.seed), "--json",
+           "--quiet", "--no-report", "--log", run.folder},
+          timeout};
+}
+
+void remove_folder(const std::string& folder) {
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
+}
+
+// The folder of a scenario, if it is empty. Only while none of its runs is under way: a run that
+// is just making its own folder in it would find it gone.
+void remove_parent(const std::string& folder) {
+  std::error_code ignored;
+  fs::remove(fs::path(folder).parent_path(), ignored);
+}
+
+// Counts runs, tells of scenarios in their order.
+class Session {
+ public:
+  Session(Suite& suite, const SuiteSettings& settings) : suite_(suite), settings_(settings) {
+    left_.resize(suite.scenarios.size());
+    for (const SuiteRun& run : suite.runs) ++left_[run.scenario];
+    suite.results.assign(suite.scenarios.size(), {});
+    progress_.runs = suite.runs.size();
+  }
+
+  void started(std::size_t r) {
+    progress_.running.push_back(label(r));
+    tell();
+  }
+
+  void done(std::size_t r, const ProcessResult& result) {
+    SuiteRun& run = suite_.runs[r];
+    read_result(result, suite_.scenarios[run.scenario], run, suite_.coverage);
+    if (run.verdict == Verdict::passed && !settings_.keep) remove_folder(run.folder);
+    std::erase(progress_.running, label(r));
+    ++progress_.done;
+    progress_.failed += run.verdict != Verdict::passed && run.verdict != Verdict::stopped ? 1U : 0U;
+    if (--left_[run.scenario] == 0) remove_parent(run.folder);
+    tell();
+    judge_finished();
+  }
+
+  void judge_finished() {
+    for (; next_ < left_.size() && left_[next_] == 0; ++next_) {
+      suite_.results[next_] = judge(suite_, next_);
+      if (settings_.scenario_done) settings_.scenario_done(suite_, next_);
+    }
+  }
+
+ private:
+  std::string label(std::size_t r) const {
+    const SuiteRun& run = suite_.runs[r];
+    return fmt::format("{} #{}", suite_.scenarios[run.scenario].name, run.seed);
+  }
+  void tell() const {
+    if (settings_.progress) settings_.progress(progress_);
+  }
+
+  Suite& suite_;
+  const SuiteSettings& settings_;
+  SuiteProgress progress_;
+  std::vector<std::size_t> left_;  // runs of each scenario that are not done
+  std::size_t next_ = 0;           // the first scenario that is not judged
+};
+
+}  // namespace
+
+void run_suite(Suite& suite, const SuiteSettings& settings) {
+  std::error_code error;
+  fs::create_directories(settings.out, error);
+  if (error) {
+    throw std::runtime_error("cannot create the folder '" + settings.out + "': " + error.message());
+  }
+  suite.started = utc_now();
+  const auto start = std::chrono::steady_clock::now();
+  list_runs(suite, settings);
+  std::vector<Command> commands;
+  for (const SuiteRun& run : suite.runs) {
+    remove_folder(run.folder);  // a log of an earlier session is not this run's
+    commands.push_back(command_of(suite.scenarios[run.scenario], run, settings));
+  }
+  Session session(suite, settings);
+  session.judge_finished();
+  PoolSettings pool;
+  pool.jobs = settings.jobs;
+  pool.stop = settings.stop;
+  pool.started = [&session](std::size_t r) { session.started(r); };
+  pool.done = [&session](std::size_t r, const ProcessResult& result) { session.done(r, result); };
+  run_processes(commands, pool);
+  suite.interrupted = settings.stop != nullptr && settings.stop->load();
+  suite.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void write_failure_reports(Suite& suite, const SuiteSettings& settings, std::size_t each) {
+  std::vector<Command> commands;
+  std::vector<std::size_t> of;
+  std::vector<std::size_t> count(suite.scenarios.size());
+  for (std::size_t r = 0; r < suite.runs.size(); ++r) {
+    SuiteRun& run = suite.runs[r];
+    std::error_code ignored;
+    if (run.verdict == Verdict::passed || run.verdict == Verdict::stopped) continue;
+    if (suite.results[run.scenario].passed || !fs::exists(run.folder + "/log.mcap", ignored))
+      continue;
+    if (count[run.scenario]++ >= each) continue;
+    Command command{{settings.program, "report", run.folder}, kReportTimeout};
+    if (const auto moment = moment_of(run)) {
+      command.arguments.push_back(
+          fmt::format("--from={:.3f}s", std::max(*moment - kReportBefore, 0.0)));
+      command.arguments.push_back(fmt::format("--to={:.3f}s", *moment + kReportAfter));
+    }
+    commands.push_back(std::move(command));
+    of.push_back(r);
+  }
+  PoolSettings pool;
+  pool.jobs = settings.jobs;
+  pool.stop = settings.stop;
+  pool.done = [&](std::size_t i, const ProcessResult& result) {
+    SuiteRun& run = suite.runs[of[i]];
+    std::error_code ignored;
+    const std::string page = run.folder + "/report.html";
+    if (result.end == ProcessEnd::exited && fs::exists(page, ignored)) run.report = page;
+  };
+  run_processes(commands, pool);
+}
+
+}  // namespace footfall::lab

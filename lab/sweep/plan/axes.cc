@@ -1,0 +1,293 @@
+// Lists, grids and draws as values of axes; see axes.h.
+#include "lab/sweep/plan/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/yaml/value_reader.h"
+#include "core/yaml_text/write.h"
+#include "lab/sweep/plan/keys.h"
+#include "lab/sweep/plan/sample.h"
+
+namespace footfall::lab {
+namespace {
+
+using core::Diagnostics;
+using core::YamlNode;
+
+// A number and the unit behind it, as written: {150, "ms"}.
+struct Written {
+  double number = 0.0;
+  std::string unit;
+};
+
+std::optional<Written> written(const std::string& text) {
+  const auto quantity = core::parse_quantity(text);
+  if (!quantity) return std::nullopt;
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  std::string unit = end;
+  unit.erase(0, unit.find_first_not_of(" \t"));
+  return Written{number, std::move(unit)};
+}
+
+// Two quantities of one dimension in one unit: the one both are written with, else SI.
+struct Ends {
+  double a = 0.0, b = 0.0;
+  std::string unit;
+};
+
+std::optional<Ends> read_ends(const YamlNode& a, const YamlNode& b, Diagnostics& diagnostics) {
+  const auto first = core::read_any_quantity(a, diagnostics);
+  const auto second = core::read_any_quantity(b, diagnostics);
+  if (!first || !second) return std::nullopt;
+  if (!first->bare && !second->bare && !(first->dimension == second->dimension)) {
+    diagnostics.error(b.mark, "dimension",
+                      fmt::format("expected {}, got {}", core::dimension_name(first->dimension),
+                                  core::describe(b)));
+    return std::nullopt;
+  }
+  const auto wa = written(a.scalar), wb = written(b.scalar);
+  if (wa && wb && wa->unit == wb->unit) return Ends{wa->number, wb->number, wa->unit};
+  if (first->bare != second->bare) {
+    diagnostics.error(b.mark, "dimension",
+                      fmt::format("one of {} and {} has a unit, the other has none",
+                                  core::describe(a), core::describe(b)));
+    return std::nullopt;
+  }
+  return Ends{first->value, second->value, core::unit_text(first->dimension)};
+}
+
+std::optional<Ends> read_pair_of(const YamlNode& node, Diagnostics& diagnostics) {
+  if (!node.is_sequence() || node.items.size() != 2) {
+    core::report_expected(node, "a list of two values", diagnostics);
+    return std::nullopt;
+  }
+  return read_ends(node.items[0], node.items[1], diagnostics);
+}
+
+// Computed: nine digits are far below what a robot feels, and hide the last bits of the arithmetic.
+SweepValue computed_value(double number, const std::string& unit, core::Mark mark) {
+  const std::string digits = fmt::format("{:.9g}", number);
+  return {unit.empty() ? digits : digits + " " + unit, std::stod(digits), mark};
+}
+
+// The unit that all values share; their numbers are of one kind only then.
+void settle_units(SweepAxis& axis) {
+  bool first = true;
+  for (const SweepValue& value : axis.values) {
+    const auto w = written(value.text);
+    if (!w) continue;
+    if (first) axis.unit = w->unit;
+    first = false;
+    if (w->unit == axis.unit) continue;
+    axis.unit.clear();  // 150 ms beside 0.2 s: SI
+    for (SweepValue& other : axis.values) {
+      if (const auto q = core::parse_quantity(other.text)) {
+        other.number = q->value;
+        axis.unit = core::unit_text(q->dimension);
+      }
+    }
+    return;
+  }
+}
+
+bool is_value(const YamlNode& node) {
+  if (node.is_scalar()) return true;
+  return node.is_sequence() && !node.items.empty() &&
+         std::ranges::all_of(node.items, &YamlNode::is_scalar);
+}
+
+std::optional<SweepAxis> read_list(const core::YamlEntry& entry, Diagnostics& diagnostics) {
+  SweepAxis axis{entry.key, entry.key_mark, {}, "", true};
+  if (!core::expect_sequence(entry.value, "a list of values", diagnostics)) return std::nullopt;
+  if (entry.value.items.empty()) {
+    diagnostics.error(entry.value.mark, "empty-value", "no values: nothing would be run");
+    return std::nullopt;
+  }
+  for (const YamlNode& item : entry.value.items) {
+    if (!is_value(item)) {
+      core::report_expected(item, "a value, or a list of numbers for a vector", diagnostics);
+      return std::nullopt;
+    }
+    SweepValue value{core::to_flow_yaml(item), std::nullopt, item.mark};
+    if (item.is_scalar()) {
+      if (const auto w = written(item.scalar)) value.number = w->number;
+    }
+    const auto twice = [&](const SweepValue& other) { return other.text == value.text; };
+    if (std::ranges::any_of(axis.values, twice)) {
+      diagnostics.error(item.mark, "duplicate", fmt::format("the value {} twice", value.text));
+    }
+    axis.values.push_back(std::move(value));
+  }
+  settle_units(axis);
+  return axis;
+}
+
+std::optional<SweepAxis> read_grid(const core::YamlEntry& entry, Diagnostics& diagnostics) {
+  const YamlNode& map = entry.value;
+  core::check_keys(map, kSweepGridKeys, diagnostics);
+  const YamlNode* from = core::require_key(map, "from", diagnostics);
+  const YamlNode* to = core::require_key(map, "to", diagnostics);
+  const YamlNode* count_node = core::require_key(map, "count", diagnostics);
+  if (from == nullptr || to == nullptr || count_node == nullptr) return std::nullopt;
+  const auto count = core::read_integer(*count_node, 2, 100'000, diagnostics);
+  const auto ends = read_ends(*from, *to, diagnostics);
+  bool log = false;
+  if (const YamlNode* node = map.find("log")) {
+    log = core::read_bool(*node, diagnostics).value_or(false);
+  }
+  if (!count || !ends) return std::nullopt;
+  if (log && !(ends->a > 0.0 && ends->b > 0.0)) {
+    diagnostics.error(map.mark, "range", "equal factors need ends above 0");
+    return std::nullopt;
+  }
+  if (ends->a == ends->b) {
+    diagnostics.error(to->mark, "range", "`from` and `to` are the same");
+    return std::nullopt;
+  }
+  SweepAxis axis{entry.key, entry.key_mark, {}, ends->unit, false};
+  for (std::int64_t k = 0; k < *count; ++k) {
+    const double part = static_cast<double>(k) / static_cast<double>(*count - 1);
+    const double number =
+        log ? ends->a * std::pow(ends->b / ends->a, part) : ends->a + part * (ends->b - ends->a);
+    axis.values.push_back(computed_value(number, ends->unit, map.mark));
+  }
+  return axis;
+}
+
+std::optional<DistributionSpec> read_distribution(const YamlNode& map, std::string& unit,
+                                                  Diagnostics& diagnostics) {
+  if (!core::expect_map(map, "a distribution such as {uniform: [1, 2]}", diagnostics)) {
+    return std::nullopt;
+  }
+  core::check_keys(map, kSweepDistributionKeys, diagnostics);
+  constexpr std::array<const char*, 3> kKinds = {"uniform", "log_uniform", "normal"};
+  const YamlNode* node = nullptr;
+  DistributionSpec d;
+  for (std::size_t k = 0; k < kKinds.size(); ++k) {
+    const YamlNode* found = map.find(kKinds[k]);
+    if (found == nullptr) continue;
+    if (node != nullptr) {
+      diagnostics.error(found->mark, "misplaced-key",
+                        fmt::format("'{}' beside another distribution", kKinds[k]));
+      return std::nullopt;
+    }
+    node = found;
+    d.kind = static_cast<Distribution>(k);
+  }
+  if (node == nullptr) {
+    diagnostics.error(map.mark, "missing-key",
+                      "one of the keys 'uniform', 'log_uniform', 'normal' is missing");
+    return std::nullopt;
+  }
+  const auto ends = read_pair_of(*node, diagnostics);
+  if (!ends) return std::nullopt;
+  d.a = ends->a, d.b = ends->b, unit = ends->unit;
+  const bool normal = d.kind == Distribution::normal;
+  const bool good =
+      normal ? d.b > 0.0 : d.a < d.b && (d.kind == Distribution::uniform || d.a > 0.0);
+  if (!good) {
+    diagnostics.error(node->mark, "range",
+                      normal ? "the standard deviation must be above 0"
+                             : "expected the smaller value first, above 0 for log_uniform");
+    return std::nullopt;
+  }
+  const YamlNode* within = map.find("within");
+  if (within == nullptr) return d;
+  if (!normal) {
+    diagnostics.error(within->mark, "misplaced-key", "'within' belongs to 'normal'");
+    return std::nullopt;
+  }
+  const auto cut = read_pair_of(*within, diagnostics);
+  if (!cut) return std::nullopt;
+  if (cut->unit != unit || !(cut->a < cut->b)) {
+    diagnostics.error(within->mark, "range",
+                      "expected the smaller value first, in the unit of 'normal'");
+    return std::nullopt;
+  }
+  d.low = cut->a, d.high = cut->b;
+  return d;
+}
+
+void add_axis(SweepDescription& sweep, SweepGroup& group, SweepAxis axis,
+              Diagnostics& diagnostics) {
+  const auto twice = [&](const SweepAxis& other) { return other.name == axis.name; };
+  if (std::ranges::any_of(sweep.axes, twice)) {
+    diagnostics.error(axis.mark, "duplicate", fmt::format("'{}' is given values twice", axis.name));
+  }
+  if (!core::is_dotted_name(axis.name)) {
+    diagnostics.error(axis.mark, "name", fmt::format("'{}' is no name", axis.name));
+  }
+  group.size = axis.values.size();
+  group.axes.push_back(sweep.axes.size());
+  sweep.axes.push_back(std::move(axis));
+}
+
+}  // namespace
+
+void read_sweep_vary(const YamlNode& node, SweepDescription& sweep, Diagnostics& diagnostics) {
+  if (!core::expect_map(node, "values by name", diagnostics)) return;
+  for (const core::YamlEntry& entry : node.entries) {
+    auto axis =
+        entry.value.is_map() ? read_grid(entry, diagnostics) : read_list(entry, diagnostics);
+    if (!axis) continue;
+    SweepGroup group;
+    add_axis(sweep, group, std::move(*axis), diagnostics);
+    sweep.groups.push_back(std::move(group));
+  }
+}
+
+void read_sweep_zip(const YamlNode& node, SweepDescription& sweep, Diagnostics& diagnostics) {
+  if (!core::expect_map(node, "lists by name", diagnostics)) return;
+  SweepGroup group;
+  for (const core::YamlEntry& entry : node.entries) {
+    auto axis = read_list(entry, diagnostics);
+    if (!axis) continue;
+    if (!group.axes.empty() && axis->values.size() != group.size) {
+      diagnostics.error(
+          entry.value.mark, "size",
+          fmt::format("{} values beside {} of '{}': zipped lists are of one length",
+                      axis->values.size(), group.size, sweep.axes[group.axes.front()].name));
+      continue;
+    }
+    add_axis(sweep, group, std::move(*axis), diagnostics);
+  }
+  if (!group.axes.empty()) sweep.groups.push_back(std::move(group));
+}
+
+void read_sweep_sample(const YamlNode& node, SweepDescription& sweep, Diagnostics& diagnostics) {
+  if (!core::expect_map(node, "a map with 'count' and 'of'", diagnostics)) return;
+  core::check_keys(node, kSweepSampleKeys, diagnostics);
+  const YamlNode* of = core::require_key(node, "of", diagnostics);
+  const YamlNode* count_node = core::require_key(node, "count", diagnostics);
+  if (of == nullptr || count_node == nullptr) return;
+  const auto count = core::read_integer(*count_node, 1, 1'000'000, diagnostics);
+  std::int64_t seed = 1;
+  if (const YamlNode* key = node.find("seed")) {
+    seed = core::read_integer(*key, 0, 1'000'000'000, diagnostics).value_or(1);
+  }
+  SampleMethod method = SampleMethod::random;
+  if (const YamlNode* key = node.find("method")) {
+    const auto index = core::read_choice(*key, kSweepMethods, diagnostics, "a method");
+    method = static_cast<SampleMethod>(index.value_or(0));
+  }
+  if (!count || !core::expect_map(*of, "distributions by name", diagnostics)) return;
+  SweepGroup group;
+  for (const core::YamlEntry& entry : of->entries) {
+    SweepAxis axis{entry.key, entry.key_mark, {}, "", false};
+    const auto distribution = read_distribution(entry.value, axis.unit, diagnostics);
+    if (!distribution) continue;
+    for (const double u : unit_draws(entry.key, static_cast<std::uint64_t>(seed),
+                                     static_cast<std::size_t>(*count), method)) {
+      axis.values.push_back(
+          computed_value(quantile(*distribution, u), axis.unit, entry.value.mark));
+    }
+    add_axis(sweep, group, std::move(axis), diagnostics);
+  }
+  if (!group.axes.empty()) sweep.groups.push_back(std::move(group));
+}
+
+}  // namespace footfall::lab
