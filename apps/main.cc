@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "apps/commands.h"
-#include "apps/live_options.h"
-#include "apps/report_command.h"
+#include "apps/log/report_command.h"
+#include "apps/shared/commands.h"
+#include "apps/shared/live_options.h"
 #include "lab/process/pool.h"
 #include "lab/run/version.h"
 

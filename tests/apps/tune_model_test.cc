@@ -1,13 +1,12 @@
 // What a person who tunes sees and asks for.
-#include "apps/tune_model.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/tune_text.h"
+#include "apps/tune/model/model.h"
+#include "apps/tune/view/text.h"
 #include "tests/apps/tune_test_support.h"
 
 namespace footfall::apps {

@@ -1,11 +1,11 @@
 // Numbers as people read, type and step them.
-#include "apps/tune_quantity.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "apps/tune/model/quantity.h"
 
 namespace footfall::apps {
 namespace {

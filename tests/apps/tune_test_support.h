@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/tune_model.h"
+#include "apps/tune/model/model.h"
 
 namespace footfall::apps {
 

@@ -1,11 +1,10 @@
 // Keys of the full screen, the requests that come of them, and the picture.
-#include "apps/tune_view.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/tune_layout.h"
-#include "apps/tune_pages.h"
+#include "apps/tune/view/layout.h"
+#include "apps/tune/view/pages.h"
+#include "apps/tune/view/view.h"
 #include "tests/apps/tune_test_support.h"
 
 namespace footfall::apps {

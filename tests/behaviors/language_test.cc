@@ -59,7 +59,7 @@ TEST(Language, EveryTaskTypeOfTheTablesIsOneOfTheLoader) {
   }
 }
 // A lone signal is told from a word by its dot; editors know those without one by name
-// (apps/scalar_patterns.cc).
+// (apps/reference/scalar_patterns.cc).
 TEST(Language, SignalsHaveADotInTheirNameButForAFew) {
   core::SignalTable table;
   register_signals({}, {{"height", {"z"}, {core::kLength}, false}}, {"tension"}, {"foot"}, table);

@@ -1,0 +1,194 @@
+// `footfall check`: everything that can be known before a motor moves.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/shared/commands.h"
+#include "apps/shared/output_file.h"
+#include "apps/suites/sweep_setup.h"
+#include "behaviors/check/physics/check.h"
+#include "lab/scenario/loader.h"
+#include "lab/suite/files.h"
+#include "model/control_model.h"
+#include "sim/world/description.h"
+
+namespace footfall::apps {
+namespace {
+
+struct CheckOptions {
+  std::vector<std::string> files;
+  std::string stdin_name = "stdin";
+  bool strict = false, json = false;
+};
+
+void check_model(const model::RobotDescription& robot, core::Diagnostics& diagnostics) {
+  try {
+    model::ControlModel model(robot);
+  } catch (const std::exception& error) {
+    diagnostics.error({diagnostics.add_file(robot.path), 0, 0}, "model", error.what());
+  }
+}
+
+void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
+  const model::RobotDescription robot = model::load_robot(path, diagnostics);
+  if (!diagnostics.has_errors()) check_model(robot, diagnostics);
+}
+
+void check_world(const std::string& path, core::Diagnostics& diagnostics) {
+  const sim::WorldDescription world = sim::load_world(path, diagnostics);
+  if (diagnostics.has_errors()) return;
+  core::Diagnostics refused;  // by `run`: the file is right all the same
+  sim::check_supported(world, refused);
+  for (core::Diagnostic item : refused.all()) {
+    item.text += "; runs refuse this world";
+    diagnostics.warning(item.mark, item.id, item.text);
+  }
+}
+
+// With a robot: what it asks of its physics.
+void check_loaded(const std::unique_ptr<behaviors::Behavior>& behavior,
+                  core::Diagnostics& diagnostics) {
+  if (!behavior || !behavior->has_robot) return;
+  try {
+    behaviors::check_physics(*behavior, diagnostics);
+  } catch (const std::exception& error) {
+    diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
+  }
+}
+
+behaviors::LoadOptions load_options() {
+  behaviors::LoadOptions options;
+  options.search = search_path();
+  return options;
+}
+
+void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
+  check_loaded(behaviors::load_behavior(path, load_options(), diagnostics), diagnostics);
+}
+
+// The world that a scenario names: a file beside it, or one that is found by name.
+void check_world_of(const lab::ScenarioDescription& scenario, core::Diagnostics& diagnostics) {
+  if (scenario.world.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(scenario.path).parent_path();
+  const std::string beside = sim::find_world_file((folder / scenario.world).string(), {});
+  const std::string path =
+      beside.empty() ? sim::find_world_file(scenario.world, search_path()) : beside;
+  if (!path.empty()) {
+    sim::load_world(path, diagnostics);
+  } else if (scenario.world_mark.line > 0) {
+    diagnostics.error(scenario.world_mark, "cannot-read",
+                      fmt::format("unknown world '{}': no such file here, and no "
+                                  "sim/worlds/{}.yaml in {}",
+                                  scenario.world, scenario.world, fmt::join(search_path(), ", ")));
+  }
+}
+
+void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
+  check_world_of(lab::load_scenario(path, {search_path()}, diagnostics), diagnostics);
+}
+
+// Kinds of files by their first key. A file of no kind is taken for a behavior, which says so.
+struct Kind {
+  const char* key;
+  void (*check)(const std::string& path, core::Diagnostics& diagnostics);
+};
+constexpr Kind kKinds[] = {
+    {"behavior", check_behavior}, {"robot", check_robot},      {"world", check_world},
+    {"scenario", check_scenario}, {"sweep", check_sweep_file},
+};
+
+void check_file(const std::string& file, const CheckOptions& options,
+                core::Diagnostics& diagnostics) {
+  if (file == "-") {
+    const std::string text = read_whole_file(file);
+    check_loaded(
+        behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics),
+        diagnostics);
+    return;
+  }
+  const std::string path = find_behavior_file(file);
+  const std::string key = lab::first_key(path, behaviors::library_folders(search_path()));
+  const auto kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return key == k.key; });
+  (kind == std::end(kKinds) ? check_behavior : kind->check)(path, diagnostics);
+}
+
+nlohmann::ordered_json to_json(const std::string& name, const core::Diagnostics& diagnostics,
+                               bool ok) {
+  auto list = nlohmann::ordered_json::array();
+  for (const core::Diagnostic& item : diagnostics.sorted()) {
+    list.push_back({{"severity", item.severity == core::Severity::error ? "error" : "warning"},
+                    {"id", item.id},
+                    {"file", item.mark.file >= 0 ? diagnostics.file(item.mark.file) : name},
+                    {"line", item.mark.line},
+                    {"column", item.mark.column},
+                    {"text", item.text}});
+  }
+  return {{"file", name}, {"ok", ok}, {"diagnostics", std::move(list)}};
+}
+
+std::string counted(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+int check(const CheckOptions& options) {
+  int exit_code = kGood, errors = 0, warnings = 0;
+  auto results = nlohmann::ordered_json::array();
+  for (const std::string& file : options.files) {
+    core::Diagnostics diagnostics;
+    check_file(file, options, diagnostics);
+    const auto items = diagnostics.sorted();
+    const auto wrong = static_cast<int>(
+        std::ranges::count(items, core::Severity::error, &core::Diagnostic::severity));
+    const int doubtful = static_cast<int>(items.size()) - wrong;
+    errors += wrong;
+    warnings += doubtful;
+    const bool ok = wrong == 0 && (doubtful == 0 || !options.strict);
+    if (wrong > 0) exit_code = kBadInput;
+    if (!ok) exit_code = std::max(exit_code, kRobotFailed);
+    const std::string name = file == "-" ? options.stdin_name : file;
+    if (options.json) {
+      results.push_back(to_json(name, diagnostics, ok));
+      continue;
+    }
+    print_diagnostics(diagnostics);
+    if (ok)
+      fmt::print("{}: ok{}\n", name, doubtful > 0 ? " (" + counted(doubtful, "warning") + ")" : "");
+  }
+  if (options.json) {
+    const nlohmann::ordered_json out = {{"files", std::move(results)}};
+    // Bytes of a file that are no UTF-8 are shown as such, not an exception.
+    fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else if (options.files.size() > 1 || errors + warnings > 0) {
+    fmt::print("{} checked: {}, {}\n", counted(static_cast<int>(options.files.size()), "file"),
+               counted(errors, "error"), counted(warnings, "warning"));
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* command = app.add_subcommand(
+      "check", "Checks behavior, robot, world, scenario and sweep files without running them");
+  command
+      ->add_option("FILE", options->files,
+                   "Behavior files or names, robot, world, scenario and sweep files; - for a "
+                   "behavior on stdin")
+      ->required();
+  command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
+  command->add_flag("--json", options->json, "One JSON object with every problem");
+  command->add_option(
+      "--stdin-name", options->stdin_name,
+      "What stands for the file of - in messages; `base:` and `robot:` are sought beside it");
+  command->footer(
+      "Exit codes: 0 clean, 1 warnings with --strict, 2 errors.\n"
+      "Example: footfall check --strict behaviors/library/balance.yaml robots/hume/robot.yaml");
+  command->callback([options, &exit_code] { exit_code = check(*options); });
+}
+
+}  // namespace footfall::apps

@@ -1,0 +1,104 @@
+// `footfall events`: what happened in a run, from its log, one line an event.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "apps/shared/commands.h"
+#include "apps/shared/log_argument.h"
+#include "core/units/units.h"
+#include "core/yaml/text_check.h"
+#include "lab/log/reader.h"
+
+namespace footfall::apps {
+namespace {
+
+struct EventsOptions {
+  std::string log;
+  std::vector<std::string> kinds;
+  std::string from, to;  // as written
+  bool json = false;
+};
+
+double read_time(const std::string& text, const char* option, double otherwise) {
+  if (text.empty()) return otherwise;
+  const auto quantity = core::parse_quantity(text);
+  if (quantity && (quantity->bare || quantity->dimension == core::kTime)) return quantity->value;
+  throw std::runtime_error(
+      fmt::format("{}: error: expected a time such as 2.5s, got '{}'", option, text));
+}
+
+// A kind that no log has is a slip; one that this log lacks is none.
+void check_kinds(const std::vector<std::string>& kinds, const lab::Log& log) {
+  std::set<std::string> known = {"transition", "mark", "step", "log",
+                                 "fault",      "plan", "push", "end"};
+  for (const lab::LoggedEvent& event : log.events) known.insert(event.kind);
+  const std::vector<std::string> names(known.begin(), known.end());
+  for (const std::string& kind : kinds) {
+    if (known.contains(kind)) continue;
+    throw std::runtime_error(fmt::format("--kind: error: unknown kind '{}'{}", kind,
+                                         core::did_you_mean_or_list(kind, names)));
+  }
+}
+
+std::string text_of(const lab::LoggedEvent& event) {
+  const std::string name = core::on_one_line(event.name), detail = core::on_one_line(event.detail);
+  const char* between = event.kind == "transition" ? "-> " : "";
+  return fmt::format("{:10.4f} s  {:<10} {}{}{}{}\n", event.time, core::on_one_line(event.kind),
+                     name, detail.empty() ? "" : "  ", detail.empty() ? "" : between, detail);
+}
+
+std::string json_of(const lab::LoggedEvent& event) {
+  const nlohmann::ordered_json line = {
+      {"time_s", event.time}, {"kind", event.kind}, {"name", event.name}, {"detail", event.detail}};
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+void print_events(const EventsOptions& options) {
+  const double from = read_time(options.from, "--from", -std::numeric_limits<double>::infinity());
+  const double to = read_time(options.to, "--to", std::numeric_limits<double>::infinity());
+  const lab::Log log = lab::read_log(log_path(options.log));
+  check_kinds(options.kinds, log);
+  if (!log.complete) fmt::print(stderr, "warning: the log was cut off; the events end there\n");
+  for (const lab::LoggedEvent& event : log.events) {
+    if (event.time < from || event.time > to) continue;
+    const bool asked = options.kinds.empty() ||
+                       std::ranges::find(options.kinds, event.kind) != options.kinds.end();
+    if (asked) fmt::print("{}", options.json ? json_of(event) : text_of(event));
+  }
+}
+
+}  // namespace
+
+void add_events_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<EventsOptions>();
+  CLI::App* command = app.add_subcommand(
+      "events", "Lists what happened in a run: transitions, marks, steps, texts, faults");
+  command->add_option("LOG", options->log, "log.mcap, or the folder it is in")->required();
+  command
+      ->add_option(
+          "--kind", options->kinds,
+          "Only these, commas between: transition, mark, step, log, fault, plan, push, end")
+      ->delimiter(',');
+  command->add_option("--from", options->from, "From this time on, e.g. 2.5s");
+  command->add_option("--to", options->to, "Up to this time");
+  command->add_flag("--json", options->json, "One JSON object a line");
+  command->footer("Example: footfall events out/run --kind log,fault --from 2s");
+  command->callback([options, &exit_code] {
+    try {
+      print_events(*options);
+      exit_code = kGood;
+    } catch (const std::runtime_error& error) {
+      const std::string text = error.what();
+      const bool ours = text.starts_with("--");
+      fmt::print(stderr, "{}{}\n", ours ? "" : "error: ", text);
+      exit_code = kBadInput;
+    }
+  });
+}
+
+}  // namespace footfall::apps

@@ -1,0 +1,131 @@
+// `footfall export`: a log as CSV, for other programs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "apps/shared/commands.h"
+#include "apps/shared/log_argument.h"
+#include "apps/shared/output_file.h"
+#include "core/units/units.h"
+#include "core/yaml/glob.h"
+
+namespace footfall::apps {
+namespace {
+
+struct ExportArguments {
+  std::string log, out, from, to;
+  std::vector<std::string> signals;
+  bool csv = false, events = false, all = false;
+};
+
+double time_of(const std::string& text, const char* option, double otherwise) {
+  if (text.empty()) return otherwise;
+  const auto quantity = core::parse_quantity(text);
+  if (!quantity || !(quantity->bare || quantity->dimension == core::kTime)) {
+    throw std::runtime_error(
+        fmt::format("{}: error: expected a time such as 2.5s, got '{}'", option, text));
+  }
+  return quantity->value;
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+// Columns in the log's order; a pattern that fits none is a mistake.
+std::vector<std::size_t> chosen(const ExportArguments& arguments, const lab::Log& log) {
+  std::vector<bool> wanted(log.signals.size(), arguments.signals.empty());
+  for (const std::string& pattern : arguments.signals) {
+    bool any = false;
+    for (std::size_t s = 0; s < log.signals.size(); ++s) {
+      if (!core::glob_matches(pattern, log.signals[s].name)) continue;
+      wanted[s] = any = true;
+    }
+    if (!any) throw std::runtime_error("--signals: error: no signal '" + pattern + "' in the log");
+  }
+  std::vector<std::size_t> columns;
+  for (std::size_t s = 0; s < wanted.size(); ++s) {
+    if (wanted[s]) columns.push_back(s);
+  }
+  return columns;
+}
+
+std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, double from,
+                        double to) {
+  const std::vector<std::size_t> columns = chosen(arguments, log);
+  fmt::memory_buffer out;
+  fmt::format_to(std::back_inserter(out), "tick,time_s");
+  for (const std::size_t s : columns) {
+    const std::string& unit = log.signals[s].unit;
+    fmt::format_to(std::back_inserter(out), ",{}",
+                   quoted(log.signals[s].name + (unit.empty() ? "" : " [" + unit + "]")));
+  }
+  for (std::size_t row = 0; row < log.rows(); ++row) {
+    if (log.time[row] < from || log.time[row] > to) continue;
+    fmt::format_to(std::back_inserter(out), "\n{},{:.9f}", log.tick[row], log.time[row]);
+    for (const std::size_t s : columns) {
+      const float value = log.column[s][row];
+      if (value != value) {
+        out.push_back(',');  // not in force: an empty field
+      } else {
+        fmt::format_to(std::back_inserter(out), ",{}", value);
+      }
+    }
+  }
+  out.push_back('\n');
+  return fmt::to_string(out);
+}
+
+std::string events_csv(const lab::Log& log, double from, double to) {
+  std::string out = "tick,time_s,kind,name,detail\n";
+  for (const lab::LoggedEvent& e : log.events) {
+    if (e.time < from || e.time > to) continue;
+    out += fmt::format("{},{:.9f},{},{},{}\n", e.tick, e.time, quoted(e.kind), quoted(e.name),
+                       quoted(e.detail));
+  }
+  return out;
+}
+
+int run_export(const ExportArguments& arguments) {
+  const double from = time_of(arguments.from, "--from", 0.0);
+  const double to = time_of(arguments.to, "--to", 1e12);
+  const lab::Log log =
+      lab::read_log(log_path(arguments.log), {.all_rows = arguments.all, .inputs = false});
+  if (!log.complete) std::fputs("warning: the log was cut off; the export ends there\n", stderr);
+  const std::string text =
+      arguments.events ? events_csv(log, from, to) : signals_csv(arguments, log, from, to);
+  if (arguments.out.empty()) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+  } else {
+    write_whole_file(arguments.out, text);
+  }
+  return kGood;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand("export", "A log as CSV: signals, or events");
+  command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
+  command->add_flag("--csv", arguments->csv, "CSV (the only format so far)");
+  command->add_option("--signals", arguments->signals, "Names or globs, e.g. \"com.pos.*\"")
+      ->delimiter(',');
+  command->add_flag("--events", arguments->events, "Events instead of signals");
+  command->add_flag("--all", arguments->all, "Every row there is, not only the evenly spaced ones");
+  command->add_option("--from", arguments->from, "Begins at this time, e.g. 2s");
+  command->add_option("--to", arguments->to, "Ends at this time");
+  command->add_option("-o,--output", arguments->out, "This file instead of stdout");
+  command->footer(
+      "Example: footfall export out/run --csv --signals \"com.pos.*\" --from 2s --to 3s");
+  command->callback(
+      [arguments, &exit_code] { exit_code = guarded([&] { return run_export(*arguments); }); });
+}
+
+}  // namespace footfall::apps

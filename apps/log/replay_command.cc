@@ -1,0 +1,128 @@
+// `footfall replay` and `footfall diff`: the tick again on what a log has, and two logs side by
+// side.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "apps/shared/commands.h"
+#include "apps/shared/log_argument.h"
+#include "engine/tick/control_loop.h"
+#include "lab/log/diff.h"
+#include "lab/replay/replay.h"
+#include "lab/run/log_setup.h"
+#include "lab/run/reload.h"
+
+namespace footfall::apps {
+namespace {
+
+struct ReplayArguments {
+  std::string log, behavior;
+  bool verify = false;
+};
+
+void print_lines(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) fmt::print("  {}\n", line);
+}
+
+// `name`: of a reload, empty for the log that begins with the run.
+int verify(const std::string& name, const lab::Log& log, lab::Replay& replay) {
+  if (!name.empty()) fmt::print("{}: ", name);
+  const lab::ReplayReport report = lab::verify_replay(log, replay);
+  if (!report.parameters.empty()) {
+    fmt::print("parameters that are not as logged:\n");
+    print_lines(report.parameters);
+  }
+  if (report.differs_at < 0 && report.parameters.empty()) {
+    fmt::print("identical: {} ticks\n", report.ticks);
+    return kGood;
+  }
+  if (report.differs_at < 0) {
+    fmt::print("no signal differs in {} ticks\n", report.ticks);
+    return kRobotFailed;
+  }
+  fmt::print("first difference: tick {}, {:.6f} s, in {}\n", report.differs_at, report.time,
+             report.state);
+  if (report.lines.empty()) {
+    fmt::print("  a signal, by less than its logged value shows\n");
+  } else if (report.visible_at != report.differs_at) {
+    fmt::print("  by less than logged values show; at tick {}:\n", report.visible_at);
+  }
+  print_lines(report.lines);
+  return kRobotFailed;
+}
+
+int replay_one(const std::string& name, const lab::Log& log, lab::Replay& replay, bool compare) {
+  if (compare) return verify(name, log, replay);
+  while (replay.next() < replay.end()) replay.tick({});
+  return kGood;
+}
+
+int run_replay(const ReplayArguments& arguments) {
+  const lab::Log log = read_whole_log(arguments.log);
+  const std::string file = arguments.behavior.empty() ? "" : find_behavior_file(arguments.behavior);
+  lab::Replay replay(log, file);
+  if (log.get("build") != lab::build_id()) {
+    std::fputs("warning: the log is another build's; results may differ in the last digits\n",
+               stderr);
+  }
+  int code = replay_one("", log, replay, arguments.verify);
+  const std::string folder = std::filesystem::path(log.path).parent_path().string();
+  std::deque<lab::Log> reloads;
+  for (int k = 1; code == kGood && file.empty(); ++k) {
+    const std::string path = lab::reload_log(folder.empty() ? "." : folder, k);
+    if (!std::filesystem::exists(path)) break;
+    reloads.push_back(read_whole_log(path));
+    replay.go_on(reloads.back());
+    code = replay_one(fmt::format("reload-{}", k), reloads.back(), replay, arguments.verify);
+  }
+  if (arguments.verify) return code;
+  fmt::print("replayed {} ticks, {:.3f} s, to {}\n", replay.next(),
+             static_cast<double>(replay.next()) * replay.loop().period(), replay.state());
+  return kGood;
+}
+
+int run_diff(const std::string& first, const std::string& second) {
+  const lab::LogComparison found = lab::compare_logs(read_whole_log(first), read_whole_log(second));
+  if (!found.setup.empty()) fmt::print("before the first tick:\n");
+  print_lines(found.setup);
+  for (const lab::LogDifference& d : found.differences) {
+    fmt::print("{:8} tick {}, {:.6f} s: {}\n", d.kind, d.tick, d.time, d.text);
+  }
+  if (found.same()) fmt::print("the same: {} ticks\n", found.ticks);
+  return found.same() ? kGood : kRobotFailed;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ReplayArguments>();
+  CLI::App* command = app.add_subcommand(
+      "replay", "Runs the tick again on a log's inputs, plans and edits, from the log's own files");
+  command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
+  command->add_flag("--verify", arguments->verify,
+                    "Compares every tick bit for bit; names the first difference (exit 1)");
+  command->add_option("--behavior", arguments->behavior, "This behavior instead of the log's");
+  command->footer("Example: footfall replay out/run --verify");
+  command->callback(
+      [arguments, &exit_code] { exit_code = guarded([&] { return run_replay(*arguments); }); });
+}
+
+void add_diff_command(CLI::App& app, int& exit_code) {
+  auto logs = std::make_shared<std::pair<std::string, std::string>>();
+  CLI::App* command = app.add_subcommand(
+      "diff",
+      "Where two runs part: settings, files, first differing input, command, signal, event");
+  command->add_option("LOG", logs->first, "log.mcap, or the folder it is in")->required();
+  command->add_option("OTHER", logs->second, "another")->required();
+  command->footer("Example: footfall diff out/before out/after");
+  command->callback([logs, &exit_code] {
+    exit_code = guarded([&] { return run_diff(logs->first, logs->second); });
+  });
+}
+
+}  // namespace footfall::apps

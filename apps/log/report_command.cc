@@ -1,0 +1,189 @@
+// `footfall report`; see report_command.h.
+#include "apps/log/report_command.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "apps/log/report_film.h"
+#include "apps/shared/log_argument.h"
+#include "apps/shared/output_file.h"
+#include "core/units/units.h"
+#include "lab/log/reader.h"
+#include "lab/log/window.h"
+#include "lab/report/report.h"
+#include "lab/report/states.h"
+#include "lab/run/reload.h"
+
+namespace footfall::apps {
+namespace {
+
+// A file beside the log; empty if it is not there.
+std::string text_beside(const std::filesystem::path& log, const char* name) {
+  std::ifstream file(log.parent_path() / name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A time as an option gives it. Throws std::runtime_error.
+double time_of(const char* option, const std::string& text, double otherwise) {
+  if (text.empty()) return otherwise;
+  const auto quantity = core::parse_quantity(text);
+  if (!quantity || !(quantity->bare || quantity->dimension == core::kTime)) {
+    throw std::runtime_error(std::string(option) + ": expected a time such as 12.3s, got '" + text +
+                             "'");
+  }
+  return quantity->value;
+}
+
+// The part of a log that is asked for.
+lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
+  constexpr double kEver = std::numeric_limits<double>::infinity();
+  const double from = time_of("--from", arguments.from, -kEver);
+  const double to = time_of("--to", arguments.to, kEver);
+  if (arguments.from.empty() && arguments.to.empty()) return log;
+  lab::Log part = lab::log_window(log, from, to);
+  if (part.rows() == 0) {
+    throw std::runtime_error("--from, --to: '" + log.path + "' has nothing between these times");
+  }
+  return part;
+}
+
+// The other logs of a run with reloads, which are in reports of their own.
+void tell_reloads(const std::filesystem::path& log, std::FILE* stream) {
+  std::filesystem::path folder = log.parent_path();
+  if (folder.filename().string().starts_with("reload-")) folder = folder.parent_path();
+  const std::string run = folder.empty() ? "." : folder.string();
+  std::vector<std::string> logs = {run + "/log.mcap"};
+  for (int k = 1; std::filesystem::exists(lab::reload_log(run, k)); ++k) {
+    logs.push_back(lab::reload_log(run, k));
+  }
+  std::error_code error;
+  for (const std::string& other : logs) {
+    if (logs.size() == 1 || std::filesystem::equivalent(other, log, error)) continue;
+    std::fprintf(stream, "  reloads      the run is also in %s\n", other.c_str());
+  }
+}
+
+// The diagram while the log has the rows around each transition.
+void draw_states(const lab::Log& log, lab::ReportOptions& options) {
+  try {
+    options.diagram_svg = run_program("dot", "-Tsvg", lab::state_graph(log), "graphviz");
+  } catch (const std::runtime_error& error) {
+    options.diagram_note = error.what();
+  }
+}
+
+// Several logs on one page.
+void write_comparison(const ReportArguments& arguments, std::FILE* stream) {
+  std::vector<std::string> names = {arguments.log};
+  names.insert(names.end(), arguments.more.begin(), arguments.more.end());
+  if (names.size() > lab::kMaxCompared) {
+    throw std::runtime_error("at most " + std::to_string(lab::kMaxCompared) + " logs on one page");
+  }
+  if (!arguments.strip.empty() || !arguments.film.empty()) {
+    throw std::runtime_error("--strip, --film: of one log, not of several");
+  }
+  std::vector<lab::Log> logs;
+  std::vector<lab::ComparedRun> runs;
+  for (const std::string& name : names) {
+    lab::Log log = read_whole_log(name);
+    runs.emplace_back().summary_json = text_beside(log_path(name), "summary.json");
+    if (!logs.empty()) {
+      runs.back().parting = lab::compare_logs(logs.front(), log);
+      log.inputs = {};
+      lab::keep_even_rows(log);
+    }
+    logs.push_back(std::move(log));
+  }
+  lab::keep_even_rows(logs.front());
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    logs[k] = part_of(std::move(logs[k]), arguments);
+    runs[k].log = &logs[k];
+  }
+  const std::string out =
+      arguments.out.empty()
+          ? (std::filesystem::path(log_path(arguments.log)).parent_path() / "compare.html").string()
+          : arguments.out;
+  lab::write_page(lab::compare_html(runs, arguments.static_plots), out);
+  std::fprintf(stream, "  report       %s\n", out.c_str());
+}
+
+}  // namespace
+
+int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
+  const std::filesystem::path path(log_path(arguments.log));
+  int exit_code = 0;
+  try {
+    if (!arguments.more.empty()) {
+      write_comparison(arguments, stream);
+      return 0;
+    }
+    lab::Log log = part_of(lab::read_log(path.string(), {.all_rows = true}), arguments);
+    lab::ReportOptions options;
+    draw_states(log, options);
+    lab::keep_even_rows(log);
+    options.summary_json = text_beside(path, "summary.json");
+    options.timing_json = text_beside(path, "timing.json");
+    options.static_plots = arguments.static_plots;
+    if (!arguments.no_strip) {
+      try {
+        const sim::Image strip = film_strip(log);
+        options.strip_png = sim::encode_png(strip);
+        if (!arguments.strip.empty()) sim::write_png(strip, arguments.strip);
+      } catch (const std::runtime_error& error) {
+        options.strip_note = error.what();
+        std::fprintf(stderr, "warning: the report has no film strip: %s\n", error.what());
+        if (!arguments.strip.empty()) exit_code = 3;
+      }
+    }
+    const std::string out =
+        arguments.out.empty() ? (path.parent_path() / "report.html").string() : arguments.out;
+    lab::write_report(log, out, options);
+    std::fprintf(stream, "  report       %s\n", out.c_str());
+    tell_reloads(path, stream);
+    if (!log.complete)
+      std::fprintf(stderr, "warning: the log was cut off; the report ends there\n");
+    if (!arguments.film.empty()) {
+      try {
+        write_film(log, arguments.film);
+        std::fprintf(stream, "  film         %s\n", arguments.film.c_str());
+      } catch (const std::runtime_error& error) {
+        std::fprintf(stderr, "error: %s\n", error.what());
+        exit_code = 3;
+      }
+    }
+  } catch (const std::runtime_error& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
+  }
+  return exit_code;
+}
+
+void add_report_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command = app.add_subcommand(
+      "report", "One self-contained HTML page from the log of a run, or of several side by side");
+  command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
+  command->add_option("OTHER", arguments->more, "further logs, compared with the first");
+  command->add_option("-o,--output", arguments->out,
+                      "the page (default: report.html beside the log, compare.html for several)");
+  command->add_option("--from", arguments->from, "only from this time in the run, e.g. 12.3s");
+  command->add_option("--to", arguments->to, "only up to this time");
+  command->add_option("--strip", arguments->strip, "write the film strip as PNG, too");
+  command->add_option("--film", arguments->film, "write the run as MP4 (needs ffmpeg)");
+  command->add_flag("--no-strip", arguments->no_strip, "a page without pictures of the robot");
+  command->add_flag("--static", arguments->static_plots, "plots as SVG, without script");
+  command->footer(
+      "Example: footfall report out/demo -o report.html --strip strip.png\n"
+      "         footfall report out/before out/after");
+  command->callback(
+      [arguments, &exit_code] { exit_code = write_report_files(*arguments, stdout); });
+}
+
+}  // namespace footfall::apps

@@ -1,0 +1,128 @@
+// Pictures of a run from its log; see report_film.h.
+#include "apps/log/report_film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "lab/report/data.h"
+#include "sim/view/movie.h"
+
+namespace footfall::apps {
+namespace {
+
+constexpr int kStripPictures = 16, kStripColumns = 8;
+constexpr int kPictureWidth = 240, kPictureHeight = 340;
+constexpr double kStripSteps = 4.0;  // steps that the strip shows
+constexpr int kFilmWidth = 480, kFilmHeight = 600;
+constexpr double kFilmRate = 30.0;
+
+std::array<const std::vector<float>*, 3> xyz(const lab::Log& log, const std::string& stem,
+                                             const std::array<const char*, 3>& axes = {"x", "y",
+                                                                                       "z"}) {
+  std::array<const std::vector<float>*, 3> columns{};
+  for (std::size_t i = 0; i < 3; ++i) columns[i] = log.values(stem + "." + axes[i]);
+  return columns;
+}
+
+std::array<double, 3> at(const std::array<const std::vector<float>*, 3>& columns, std::size_t row) {
+  std::array<double, 3> values{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (columns[i] != nullptr) values[i] = static_cast<double>((*columns[i])[row]);
+  }
+  return values;
+}
+
+// The last two parts of a state's path: `right_foot lift`.
+std::string short_state(const std::string& path) {
+  const std::size_t last = path.rfind('.');
+  if (last == std::string::npos || last == 0) return path;
+  const std::size_t before = path.rfind('.', last - 1);
+  std::string name = before == std::string::npos ? path : path.substr(before + 1);
+  std::ranges::replace(name, '.', ' ');
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+std::size_t row_at(const lab::Log& log, double time) {
+  const auto found = std::ranges::lower_bound(log.time, time);
+  return std::min(static_cast<std::size_t>(found - log.time.begin()), log.rows() - 1);
+}
+
+// When the last steps began.
+double strip_begin(const lab::Log& log) {
+  const auto* steps = log.values("steps");
+  if (steps == nullptr || steps->back() < static_cast<float>(kStripSteps)) return log.time.front();
+  const auto first = static_cast<float>(static_cast<double>(steps->back()) - kStripSteps);
+  std::size_t row = log.rows() - 1;
+  while (row > 0 && (*steps)[row - 1] > first - 0.5F) --row;
+  return log.time[row];
+}
+
+}  // namespace
+
+std::string film_model(const lab::Log& log) {
+  const std::string path = log.get("model");
+  if (log.rows() == 0) throw std::runtime_error("the log has no rows");
+  if (path.empty()) throw std::runtime_error("the log does not name the robot's model");
+  if (!std::filesystem::is_regular_file(path)) {
+    throw std::runtime_error("the robot's model '" + path + "' is gone");
+  }
+  return path;
+}
+
+LoggedPose::LoggedPose(const lab::Log& log, const sim::FilmRenderer& renderer)
+    : log_(log), renderer_(renderer) {
+  for (const std::string& joint : lab::parts(log, "joint.", ".position")) {
+    const int address = renderer.joint_address(joint);
+    if (address < 0) continue;
+    joints_.push_back(
+        {log.values("joint." + joint + ".position"), static_cast<std::size_t>(address)});
+  }
+  for (const std::string& foot : lab::parts(log, "contact.", "")) {
+    feet_.push_back({xyz(log, "point." + foot), xyz(log, "force." + foot)});
+  }
+}
+
+sim::FilmFrame LoggedPose::frame(std::size_t row) const {
+  sim::FilmFrame frame{renderer_.neutral(),
+                       fmt::format("{:.3f} s", log_.time[row]),
+                       short_state(lab::state_path(log_, row)),
+                       {}};
+  const std::array<double, 3> position = at(xyz(log_, "base.pos"), row);
+  const std::array<double, 3> rpy = at(xyz(log_, "base.rpy", {"roll", "pitch", "yaw"}), row);
+  if (log_.values("base.pos.x") != nullptr) renderer_.place_base(position, rpy, frame.qpos);
+  for (const Joint& joint : joints_) {
+    frame.qpos[joint.address] = static_cast<double>((*joint.column)[row]);
+  }
+  for (const Foot& foot : feet_) frame.arrows.push_back({at(foot.point, row), at(foot.force, row)});
+  return frame;
+}
+
+sim::Image film_strip(const lab::Log& log) {
+  sim::FilmRenderer renderer(film_model(log), kPictureWidth, kPictureHeight);
+  const LoggedPose pose(log, renderer);
+  const double begin = strip_begin(log), end = log.time.back();
+  std::vector<sim::Image> pictures;
+  for (int i = 0; i < kStripPictures; ++i) {
+    const double part = static_cast<double>(i) / (kStripPictures - 1);
+    pictures.push_back(renderer.render(pose.frame(row_at(log, begin + part * (end - begin)))));
+  }
+  return sim::film_strip(pictures, kStripColumns);
+}
+
+void write_film(const lab::Log& log, const std::string& path) {
+  sim::FilmRenderer renderer(film_model(log), kFilmWidth, kFilmHeight, sim::FilmQuality::fast);
+  const LoggedPose pose(log, renderer);
+  sim::MovieWriter movie(path, kFilmWidth, kFilmHeight, kFilmRate);
+  const auto frames = static_cast<int>((log.time.back() - log.time.front()) * kFilmRate) + 1;
+  for (int i = 0; i < frames; ++i) {
+    movie.add(renderer.render(pose.frame(row_at(log, log.time.front() + i / kFilmRate))));
+  }
+  movie.finish();
+}
+
+}  // namespace footfall::apps

@@ -1,0 +1,191 @@
+// `footfall run`: a behavior on a backend, with a status line, a summary, a log.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "apps/log/report_command.h"
+#include "apps/run/run_options.h"
+#include "apps/run/run_reload.h"
+#include "apps/run/run_setup.h"
+#include "apps/shared/commands.h"
+#include "lab/run/run.h"
+#include "lab/run/summary.h"
+#include "lab/scenario/loader.h"
+#include "sim/world/disturbance.h"
+
+namespace footfall::apps {
+namespace {
+
+void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& spec) {
+  if (options.pushes.size() > sim::kMaxPushes) {
+    throw InputError(fmt::format("--push: error: at most {} of them, got {}", sim::kMaxPushes,
+                                 options.pushes.size()));
+  }
+  for (const std::string& text : options.pushes) {
+    std::string error;
+    const auto push = sim::parse_push(text, error);
+    if (!push) throw InputError("--push: error: " + error);
+    if (!backend.mujoco)
+      throw InputError("--push: error: the backend '" + options.backend +
+                       "' has no physics to push in");
+    const int body = backend.mujoco->find_body(push->body);
+    if (body < 0) throw InputError("--push: error: the robot has no body '" + push->body + "'");
+    lab::ScheduledEvent event;
+    if (const auto* time = std::get_if<sim::AtTime>(&push->at)) {
+      event.at_time = time->seconds;
+    } else {
+      event.at_step = std::get<sim::AtStep>(push->at).step;
+      event.phase = std::get<sim::AtStep>(push->at).phase;
+    }
+    event.label = text;
+    sim::MujocoBackend* mujoco = backend.mujoco;
+    event.fire = [mujoco, body, p = *push] {
+      mujoco->push(body, p.force, p.direction, p.duration);
+    };
+    spec.events.push_back(std::move(event));
+  }
+}
+
+// The parameter that is the goal of the first planner; lab::has_goal holds.
+const behaviors::ParameterInfo& goal_parameter(const behaviors::Behavior& behavior) {
+  const int slot = behavior.planners.front().goal_slot;
+  return *std::ranges::find_if(behavior.parameters, [slot](const auto& info) {
+    return slot >= info.slot && slot < info.slot + info.size;
+  });
+}
+
+// The options move the goal as an operator would, so it has to be live.
+void check_goal_is_live(const behaviors::Behavior& behavior, const std::string& option) {
+  const behaviors::ParameterInfo& goal = goal_parameter(behavior);
+  if (goal.live) return;
+  throw InputError(fmt::format(
+      "{}: error: parameter '{}' of '{}' is not live{}; --set {}=\"[1 m, 0 m]\" sets where it {}",
+      option, goal.name, behavior.name, goal.variable ? ": the behavior's own actions set it" : "",
+      goal.name, goal.variable ? "begins" : "is"));
+}
+
+void check_goal_range(const behaviors::Behavior& behavior, const std::array<double, 2>& values) {
+  const behaviors::ParameterInfo& goal = goal_parameter(behavior);
+  for (const double value : values) {
+    if (!goal.has_range() || (value >= goal.min && value <= goal.max)) continue;
+    throw InputError(fmt::format("--goal: error: {:g} is outside the range of '{}', {:g} to {:g}",
+                                 value, goal.name, goal.min, goal.max));
+  }
+}
+
+void set_goal(const RunOptions& options, const behaviors::Behavior& behavior, lab::RunSpec& spec) {
+  if (options.goal.empty() && options.goal_velocity.empty()) return;
+  if (!lab::has_goal(behavior)) {
+    throw InputError("--goal: error: '" + behavior.name +
+                     "' has no planner whose goal is a parameter");
+  }
+  check_goal_is_live(behavior, options.goal.empty() ? "--goal-velocity" : "--goal");
+  std::string error;
+  if (!options.goal.empty()) {
+    spec.goal = sim::parse_vector2(options.goal, core::kLength, error);
+    if (!spec.goal) throw InputError("--goal: error: " + error);
+    check_goal_range(behavior, *spec.goal);
+  }
+  if (!options.goal_velocity.empty()) {
+    spec.goal_velocity = sim::parse_vector2(options.goal_velocity, core::kVelocity, error);
+    if (!spec.goal_velocity) throw InputError("--goal-velocity: error: " + error);
+  }
+  for (const engine::EditBatch& edit : lab::goal_edits(behavior, spec)) {
+    const auto reasons = engine::reasons_against(behavior, edit, 0);
+    if (!reasons.empty()) throw InputError("--goal: error: " + reasons.front());
+  }
+}
+
+int run_behavior(const RunOptions& options) {
+  if (!options.film.empty() && (options.no_log || options.no_report)) {
+    throw InputError(
+        "--film: error: a film is made from the log with the report: leave out --no-log and "
+        "--no-report");
+  }
+  auto behavior = load_or_explain(options.behavior, options.robot, options.set, true);
+  if (!behavior) return kBadInput;
+  if (!behavior->has_robot) {
+    throw InputError(behavior->path +
+                     ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
+  }
+  const sim::WorldDescription world = load_world(options.world);
+  Backend backend = make_backend(options, *behavior, world);
+  engine::ControlLoop loop(*behavior, *backend.hardware, loop_settings(options, world));
+
+  lab::RunSpec spec = make_spec(options, stop_on_signals());
+  schedule_pushes(options, backend, spec);
+  set_goal(options, *behavior, spec);
+  lab::RunIdentity id = {behavior->name,           behavior->robot.name, world.name,
+                         backend.hardware->name(), options.seed,         "",
+                         backend.physics};
+  const auto link = attach_link(options, loop, spec);
+  const auto log = open_log(options, *behavior, world, id);
+  spec.log = log.get();
+  LiveFiles live = watch_files(options, loop, *backend.hardware, world, log.get());
+  spec.reloads = live.reloads.get();
+
+  const lab::RunResult result = lab::run(loop, spec);
+  live.watch.reset();
+  if (spec.status) std::fputs("\r\033[K", stderr);
+  if (log) {
+    log->close();
+    if (live.reloads) live.reloads->close();
+    write_file(options.log + "/summary.json", lab::summary_json(id, result, true).dump(2) + "\n");
+    write_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
+  }
+  if (!options.quiet)
+    std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);
+  if (!options.quiet && link)
+    std::fputs(live_text(options.live, *link).c_str(), options.json ? stderr : stdout);
+  if (!options.quiet && log)
+    fmt::print(options.json ? stderr : stdout, "  log          {}\n", id.log);
+  if (!options.quiet && log && result.reloads > 0) {
+    fmt::print(options.json ? stderr : stdout, "  goes on in   {}{}\n",
+               lab::reload_log(options.log, 1),
+               result.reloads > 1 ? fmt::format(" ... reload-{}", result.reloads) : "");
+  }
+  int report_code = kGood;
+  if (log && !options.no_report) {
+    ReportArguments report;
+    report.log = id.log;
+    report.film = options.film;
+    report_code = write_report_files(report, options.json || options.quiet ? stderr : stdout);
+  }
+  if (options.json) {
+    auto json = lab::summary_json(id, result);
+    if (link) json["live"] = live_json(options.live, *link);
+    fmt::print("{}\n", json.dump());
+  }
+  const bool failed = result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault;
+  return failed ? kRobotFailed : report_code;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command =
+      app.add_subcommand("run", "Runs a behavior on a backend, headless and as fast as it goes");
+  add_run_options(*command, *options);
+  command->callback([options, command, &exit_code] {
+    try {
+      for (const CLI::Option* option : command->get_options()) {
+        if (option->count() > 0) options->given.push_back(option->get_name());
+      }
+      finish_options(*options);
+      exit_code = lab::is_scenario_file(options->behavior) ? run_scenario_file(*options)
+                                                           : run_behavior(*options);
+    } catch (const InputError& error) {
+      if (*error.what()) std::fprintf(stderr, "%s\n", error.what());
+      exit_code = kBadInput;
+    } catch (const std::exception& error) {
+      const std::string text = error.what();
+      const bool ours = text.find("error: ") != std::string::npos;  // names a file of the user's
+      std::fprintf(stderr, "%s%s\n", ours ? "" : "footfall: error: ", text.c_str());
+      exit_code = ours ? kBadInput : kMachineFailed;
+    }
+  });
+}
+
+}  // namespace footfall::apps

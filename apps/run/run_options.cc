@@ -1,0 +1,94 @@
+// CLI11 declarations of `footfall run`; see run_options.h.
+#include "apps/run/run_options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <stdexcept>
+
+#include "core/units/units.h"
+
+namespace footfall::apps {
+
+namespace {
+
+// CLI11's own message lists the limits of a double.
+CLI::Validator at_least(std::int64_t least, const char* what) {
+  return CLI::Validator(
+      [least, what](std::string& text) {
+        std::int64_t value = 0;
+        const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool good =
+            problem == std::errc() && end == text.data() + text.size() && value >= least;
+        return good ? std::string() : "expected " + std::string(what) + ", got '" + text + "'";
+      },
+      "", "");
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& o) {
+  const CLI::Validator positive = at_least(1, "a whole number above 0");
+  command
+      .add_option("BEHAVIOR", o.behavior,
+                  "Behavior file, or the name of one in behaviors/library; or a scenario file")
+      ->required();
+  command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's own");
+  command.add_option("--backend", o.backend, "mujoco (physics) or stub (double integrators)")
+      ->check(CLI::IsMember({"mujoco", "stub"}))
+      ->capture_default_str();
+  command.add_option("--world", o.world, "World file, or the name of one in sim/worlds")
+      ->capture_default_str();
+  command.add_option("--for", o.duration_text,
+                     "How long at most, e.g. 20s (default 20 s, with --steps N 20 s + N s)");
+  command.add_option("--steps", o.steps, "Ends after this many steps")->check(positive);
+  command.add_option("--seed", o.seed, "Seed of everything random in the world")
+      ->check(at_least(0, "a whole number from 0 on"))
+      ->capture_default_str();
+  command.add_option("--set", o.set,
+                     "NAME=VALUE: a parameter, gain or planner value, e.g. lift_time=160ms");
+  command.add_option(
+      "--push", o.pushes,
+      "FORCE_N,DURATION_S,DIRECTION_DEG,AT with AT a time or `step N phase P`; direction in the "
+      "heading frame, 0 forward, 90 left");
+  command.add_option("--goal", o.goal, "x,y in m: where it is told to be");
+  command.add_option("--goal-velocity", o.goal_velocity,
+                     "vx,vy in m/s: the goal moves from the start on");
+  command.add_option("--log", o.log, "Folder for log.mcap, summary.json, timing.json")
+      ->capture_default_str();
+  command.add_flag("--no-log", o.no_log, "Writes no files");
+  command.add_flag("--no-report", o.no_report, "No report page beside the log");
+  command.add_option("--film", o.film, "Writes the run as MP4 (needs ffmpeg)");
+  command.add_flag("--log-all", o.log_all, "Logs the derived signals of every tick");
+  command
+      .add_option(
+          "--log-every", o.log_every,
+          "Logs the derived signals of each N-th tick, of all around transitions and faults")
+      ->check(positive)
+      ->capture_default_str();
+  command.add_flag("--realtime", o.realtime, "Paced by the wall clock");
+  command.add_flag("--reload", o.reload,
+                   "A changed behavior file takes over the run, in a state with `reload: ok`");
+  command.add_option("--allow", o.allow, "What the behavior's scripts may reach: files, processes")
+      ->check(CLI::IsMember({"files", "processes"}));
+  add_live_options(command, o.live);
+  command.add_flag("--json", o.json, "One JSON object as the last line on stdout");
+  command.add_flag("--quiet", o.quiet, "No status line, no summary");
+  command.footer("Example: footfall run balance --for 20s --push \"40,0.1,90,step 16 phase 0.5\"");
+}
+
+void finish_options(RunOptions& o) {
+  if (o.duration_text.empty()) {
+    // A step never lasts 1 s (that is a fall), so this bound only ends runs that stopped stepping.
+    if (o.steps > 0) o.duration = 20.0 + static_cast<double>(o.steps);
+    return;
+  }
+  const auto quantity = core::parse_quantity(o.duration_text);
+  const bool time = quantity && (quantity->bare || quantity->dimension == core::kTime);
+  if (!time || !(quantity->value > 0.0)) {
+    throw std::runtime_error("--for: error: expected a time such as 20s, got '" + o.duration_text +
+                             "'");
+  }
+  o.duration = quantity->value;
+}
+
+}  // namespace footfall::apps

@@ -1,0 +1,22 @@
+// `run --reload`: watches the behavior's files and hands what they have become to the run.
+#pragma once
+
+#include <memory>
+
+#include "apps/run/run_setup.h"
+#include "engine/realtime/file_watch.h"
+#include "lab/run/reload.h"
+
+namespace footfall::apps {
+
+// Both null without --reload. `watch` goes first.
+struct LiveFiles {
+  std::unique_ptr<lab::Reloads> reloads;
+  std::unique_ptr<engine::FileWatch> watch;
+};
+
+// hardware: of the loop; log: of the run, null: none. All must outlive the result.
+LiveFiles watch_files(const RunOptions& options, engine::ControlLoop& loop, hal::Hardware& hardware,
+                      const sim::WorldDescription& world, engine::LogWriter* log);
+
+}  // namespace footfall::apps

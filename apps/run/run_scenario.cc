@@ -1,0 +1,132 @@
+// `footfall run SCENARIO`: one seed of it, each expectation's verdict, the log, one JSON object.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "apps/log/report_command.h"
+#include "apps/run/run_setup.h"
+#include "apps/shared/commands.h"
+#include "behaviors/check/physics/check.h"
+#include "hal/sensors/faults.h"
+#include "lab/judge/run.h"
+#include "lab/scenario/loader.h"
+
+namespace footfall::apps {
+namespace {
+
+// What the scenario says itself.
+void refuse_options(const RunOptions& options) {
+  constexpr std::array kSaid = {"--robot", "--world", "--for",           "--steps", "--push",
+                                "--goal",  "--film",  "--goal-velocity", "--reload"};
+  for (const std::string& given : options.given) {
+    if (std::ranges::find(kSaid, given) == kSaid.end()) continue;
+    throw InputError(given + ": error: a scenario says that itself: " + options.behavior);
+  }
+}
+
+lab::ScenarioDescription load_checked(const RunOptions& options) {
+  core::Diagnostics diagnostics;
+  const lab::ScenarioOptions how = {search_path(), split_settings(options.set, diagnostics)};
+  lab::ScenarioDescription scenario = lab::load_scenario(options.behavior, how, diagnostics);
+  print_diagnostics(diagnostics);
+  if (diagnostics.has_errors()) throw InputError("");
+  if (!scenario.behavior->has_robot) {
+    throw InputError(options.behavior + ": error: its behavior has no `robot:` and cannot be run");
+  }
+  core::Diagnostics physics;  // whose places are of the behavior's files
+  for (const std::string& file : scenario.behavior_files) physics.add_file(file);
+  behaviors::check_physics(*scenario.behavior, physics);
+  print_diagnostics(physics);
+  if (physics.has_errors()) throw InputError("");
+  return scenario;
+}
+
+lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors) {
+  lab::ScenarioHooks hooks;
+  hooks.fault = [&sensors](lab::InjectedFault fault, bool on) {
+    using Fault = lab::InjectedFault;
+    sensors.fail(fault == Fault::mocap_dropout ? hal::SensorGroup::mocap
+                 : fault == Fault::imu_dropout ? hal::SensorGroup::imu
+                                               : hal::SensorGroup::all,
+                 on);
+  };
+  sim::MujocoBackend* mujoco = backend.mujoco;
+  if (mujoco == nullptr) return hooks;
+  hooks.push = [mujoco](const std::string& body, double force, double direction, double duration) {
+    return mujoco->push(mujoco->find_body(body), force, direction, duration);
+  };
+  hooks.hold = [mujoco](const std::string& body, bool held) {
+    mujoco->hold(mujoco->find_body(body), held);
+  };
+  return hooks;
+}
+
+// Beside the log: the result, the run's figures, the trace for --bless.
+void write_results(const RunOptions& options, const lab::ScenarioDescription& scenario,
+                   const lab::RunIdentity& id, const lab::ScenarioRun& done) {
+  const auto figures = lab::summary_json(id, done.run, true);
+  write_file(options.log + "/summary.json", figures.dump(2) + "\n");
+  write_file(options.log + "/timing.json", lab::timing_json(done.run).dump(2) + "\n");
+  write_file(options.log + "/result.json",
+             lab::outcome_json(scenario, done.outcome, figures).dump(2) + "\n");
+  if (scenario.golden) {
+    lab::write_golden(options.log + "/golden.csv", *scenario.golden, done.trace);
+  }
+}
+
+}  // namespace
+
+int run_scenario_file(RunOptions options) {
+  refuse_options(options);
+  const lab::ScenarioDescription scenario = load_checked(options);
+  const bool seed_given = std::ranges::find(options.given, "--seed") != options.given.end();
+  if (!seed_given) options.seed = scenario.seeds.front();
+  const behaviors::Behavior& behavior = *scenario.behavior;
+  const sim::WorldDescription world =
+      load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
+  Backend backend = make_backend(options, behavior, world);
+  hal::SensorFaults sensors(*backend.hardware);
+  const lab::ScenarioHooks hooks = make_hooks(backend, sensors);
+  const auto problems = lab::unsupported(scenario, hooks);
+  if (!problems.empty()) throw InputError(fmt::format("{}", fmt::join(problems, "\n")));
+  engine::ControlLoop loop(behavior, sensors, loop_settings(options, world));
+
+  lab::RunSpec spec = make_spec(options, stop_on_signals());
+  lab::RunIdentity id = {behavior.name,  behavior.robot.name, world.name,
+                         sensors.name(), options.seed,        "",
+                         backend.physics};
+  const auto link = attach_link(options, loop, spec);
+  const auto log = open_log(options, behavior, world, id);
+  spec.log = log.get();
+  const bool status = spec.status != nullptr;
+  lab::ScenarioRun done = lab::run_scenario(scenario, options.seed, loop, hooks, std::move(spec));
+  if (status) std::fputs("\r\033[K", stderr);
+  done.outcome.log = id.log;
+  if (log) {
+    log->close();
+    write_results(options, scenario, id, done);
+  }
+  FILE* const people = options.json ? stderr : stdout;
+  if (!options.quiet) {
+    std::fputs(lab::summary_text(id, done.run).c_str(), people);
+    std::fputs(lab::outcome_text(scenario, done.outcome).c_str(), people);
+    if (link) std::fputs(live_text(options.live, *link).c_str(), people);
+    if (log) fmt::print(people, "  log          {}\n", id.log);
+  }
+  int report_code = kGood;
+  if (log && !options.no_report) {
+    ReportArguments report;
+    report.log = id.log;
+    report_code = write_report_files(report, options.json || options.quiet ? stderr : stdout);
+  }
+  if (options.json) {
+    const auto json = lab::outcome_json(scenario, done.outcome, lab::summary_json(id, done.run));
+    fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  }
+  return done.outcome.passed ? report_code : kRobotFailed;
+}
+
+}  // namespace footfall::apps

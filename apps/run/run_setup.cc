@@ -1,0 +1,227 @@
+// The parts of a run; see run_setup.h.
+#include "apps/run/run_setup.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "apps/shared/commands.h"
+#include "core/realtime/allocation_count.h"
+#include "core/yaml/text_check.h"
+#include "hal/backends/stub.h"
+#include "lab/run/run_log.h"
+
+namespace footfall::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::atomic<bool> g_stop{false};
+
+void on_interrupt(int) { g_stop.store(true); }
+
+}  // namespace
+
+const std::atomic<bool>* stop_on_signals() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  return &g_stop;
+}
+
+sim::WorldDescription load_world(const std::string& name, const std::string& beside,
+                                 const std::string& place) {
+  core::Diagnostics diagnostics;
+  std::string file;
+  if (!beside.empty()) {
+    file = sim::find_world_file((fs::path(beside).parent_path() / name).string(), {});
+  }
+  if (file.empty()) file = sim::find_world_file(name, search_path());
+  sim::WorldDescription world;
+  if (file.empty()) {
+    if (name != "flat") {
+      throw InputError(
+          fmt::format("{}: error: unknown world '{}': no such file, and no "
+                      "sim/worlds/{}.yaml in the search path",
+                      place.empty() ? "--world" : place, name, name));
+    }
+    return world;
+  }
+  world = sim::load_world(file, diagnostics);
+  if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+  std::fputs(diagnostics.to_string().c_str(), stderr);
+  if (diagnostics.has_errors()) throw InputError("");
+  return world;
+}
+
+Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
+                     const sim::WorldDescription& world) {
+  Backend backend;
+  if (options.backend == "stub") {
+    hal::StubSettings settings;
+    settings.joints = behavior.robot.joint_count();
+    settings.contacts = static_cast<int>(behavior.robot.contacts.size());
+    settings.period = behavior.robot.period_s();
+    settings.base = {0.0, 0.0, behavior.robot.standing_height};
+    for (const auto& joint : behavior.robot.joints) settings.start.push_back(joint.posture);
+    backend.hardware = std::make_unique<hal::StubBackend>(settings);
+    return backend;
+  }
+  auto mujoco = std::make_unique<sim::MujocoBackend>(behavior.robot, world, options.seed);
+  const sim::PhysicsFacts f = mujoco->facts();
+  backend.physics = fmt::format(
+      "step 1/{:.0f} s, friction {:g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature {:g}, "
+      "constraints {}, mocap bodies {}, mass {:.2f} kg",
+      1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max,
+      f.armature_max, f.equalities, f.mocap_bodies, f.mass);
+  backend.mujoco = mujoco.get();
+  backend.hardware = std::move(mujoco);
+  return backend;
+}
+
+engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world) {
+  engine::LoopSettings settings;
+  settings.deviation = {world.control_model.mass_scale, world.control_model.com_shift};
+  settings.planner_latency = world.planner_latency;
+  settings.surface = world.surface;
+  settings.lockstep = !options.realtime;
+  settings.seed = options.seed;
+  const auto allows = [&](const char* what) {
+    return std::find(options.allow.begin(), options.allow.end(), what) != options.allow.end();
+  };
+  settings.script_access = {allows("files"), allows("processes")};
+  return settings;
+}
+
+namespace {
+
+// Prints what the behavior says, as it says it; a chatty one must not drown the summary.
+std::function<void(double, const std::string&)> said_printer(const RunOptions& options) {
+  constexpr int kMost = 50;
+  const bool status = isatty(STDERR_FILENO) != 0;
+  std::FILE* stream = options.json ? stderr : stdout;
+  const bool logged = !options.no_log;
+  return [stream, status, logged, said = 0](double time, const std::string& text) mutable {
+    if (++said > kMost + 1) return;
+    if (status) std::fputs("\r\033[K", stderr);
+    if (said <= kMost) {
+      fmt::print(stream, "  {:8.3f} s   {}\n", time, core::on_one_line(text));
+    } else {
+      fmt::print(stream, "  ... and more{}\n",
+                 logged ? "; all of it: footfall events LOG --kind log" : "");
+    }
+    std::fflush(stream);
+  };
+}
+
+}  // namespace
+
+lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop) {
+  lab::RunSpec spec;
+  spec.max_steps = options.steps;
+  spec.max_time = options.duration;
+  spec.realtime = options.realtime;
+  spec.stop = stop;
+  if (core::allocations_are_counted()) {
+    spec.arm_allocations = core::arm_allocation_count;
+    spec.allocations = core::allocation_count;
+  }
+  if (!options.quiet) spec.said = said_printer(options);
+  if (isatty(STDERR_FILENO) && !options.quiet) {
+    spec.status = [](const lab::RunStatus& s) {
+      std::fprintf(stderr, "\r  t %7.2f s   step %5lld   %5.1f x real time   %-40.40s%s\033[K",
+                   s.time, static_cast<long long>(s.steps), s.real_time_factor, s.state.c_str(),
+                   s.note.c_str());
+      std::fflush(stderr);
+    };
+  }
+  return spec;
+}
+
+std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
+                                             lab::RunSpec& spec) {
+  auto link = make_link(options.live, loop);
+  spec.link = link.get();
+  if (link && !options.quiet) {
+    fmt::print(options.json ? stderr : stdout, "live at {}: footfall tune\n", options.live.url);
+    std::fflush(options.json ? stderr : stdout);
+  }
+  return link;
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    if (!out.flush()) throw std::runtime_error("cannot write '" + temporary + "'");
+  }
+  fs::rename(temporary, path);
+}
+
+namespace {
+
+// What was asked for, for whoever reads the log.
+std::string command_line(const RunOptions& options) {
+  std::string text = "run " + options.behavior;
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", name, value);
+  };
+  add("--robot", options.robot);
+  add("--world", options.world);
+  for (const std::string& set : options.set) add("--set", set);
+  for (const std::string& push : options.pushes) add("--push", '"' + push + '"');
+  add("--goal", options.goal);
+  add("--goal-velocity", options.goal_velocity);
+  return text;
+}
+
+// Logs of an earlier run's reloads would pass for this one's.
+void remove_reloads(const std::string& folder) {
+  for (int k = 1;; ++k) {
+    const fs::path path = fs::path(folder) / fmt::format("reload-{}", k);
+    std::error_code error;
+    if (!fs::exists(path / "log.mcap", error)) return;
+    fs::remove(path / "log.mcap", error);
+    fs::remove(path, error);  // if nobody has put anything else there
+  }
+}
+
+}  // namespace
+
+lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world) {
+  lab::LogSource source;
+  source.world = world.name;
+  source.backend = options.backend;
+  source.world_file = world.path;
+  if (options.backend == "mujoco") source.friction = world.friction;
+  source.settings = loop_settings(options, world);
+  core::Diagnostics ignored;  // they were loaded
+  source.set = split_settings(options.set, ignored);
+  source.command = command_line(options);
+  source.row_every = options.log_all ? 1 : options.log_every;
+  return source;
+}
+
+std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
+                                            const behaviors::Behavior& behavior,
+                                            const sim::WorldDescription& world,
+                                            lab::RunIdentity& id) {
+  if (options.no_log) return nullptr;
+  std::error_code error;
+  fs::create_directories(options.log, error);
+  if (error)
+    throw std::runtime_error("cannot create the log's folder '" + options.log +
+                             "': " + error.message());
+  id.log = options.log + "/log.mcap";
+  remove_reloads(options.log);
+  return std::make_unique<engine::LogWriter>(
+      id.log, behavior.signals, lab::make_log_header(behavior, log_source(options, world)));
+}
+
+}  // namespace footfall::apps

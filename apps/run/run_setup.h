@@ -1,0 +1,57 @@
+// What every run is put together from: world, backend, loop settings, log. For behaviors and
+// scenarios.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "apps/run/run_options.h"
+#include "apps/shared/commands.h"
+#include "engine/lcm/link.h"
+#include "engine/log/writer.h"
+#include "engine/tick/control_loop.h"
+#include "lab/run/run.h"
+#include "lab/run/run_log.h"
+#include "lab/run/summary.h"
+#include "sim/mujoco_backend.h"
+
+namespace footfall::apps {
+
+// The backend with what only it can do.
+struct Backend {
+  std::unique_ptr<hal::Hardware> hardware;
+  sim::MujocoBackend* mujoco = nullptr;
+  std::string physics;
+};
+
+// A world by name or path; `beside`: a file in whose folder it is sought first; `place`: where it
+// is named. Prints what is wrong with it; throws InputError.
+sim::WorldDescription load_world(const std::string& name, const std::string& beside = {},
+                                 const std::string& place = {});
+Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
+                     const sim::WorldDescription& world);
+engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world);
+// Time, steps, pace, log rate, status line, counted allocations.
+lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop);
+// Puts a run on the network of live tuning if its options say so, and says where; null if not. What
+// it returns must live as long as the run. Throws what make_link() throws.
+std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
+                                             lab::RunSpec& spec);
+// Set by Ctrl-C from now on.
+const std::atomic<bool>* stop_on_signals();
+// What a log says of how the run was set up.
+lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);
+// Creates the folder and the log in it, whose path goes to `id`; null with --no-log.
+std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
+                                            const behaviors::Behavior& behavior,
+                                            const sim::WorldDescription& world,
+                                            lab::RunIdentity& id);
+// Writes a small text file whole or not at all.
+void write_file(const std::string& path, const std::string& text);
+
+// `footfall run` of a scenario file; the exit code. Throws InputError.
+int run_scenario_file(RunOptions options);
+
+}  // namespace footfall::apps

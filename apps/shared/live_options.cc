@@ -1,0 +1,135 @@
+// From options to a link; see live_options.h.
+#include "apps/shared/live_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "apps/shared/commands.h"
+#include "core/units/units.h"
+#include "engine/lcm/link.h"
+
+namespace footfall::apps {
+namespace {
+
+double rate_of(const std::string& text) {
+  const auto quantity = core::parse_quantity(text);
+  const bool rate = quantity && (quantity->bare || quantity->dimension == core::kRate);
+  if (!rate || !(quantity->value >= 0.0) || quantity->value > 10'000.0) {
+    throw InputError(
+        "--telemetry: error: expected a rate from 0 to 10000 Hz such as '50 Hz', got '" + text +
+        "'");
+  }
+  return quantity->value;
+}
+
+// Each kind of packet that was refused, and how many.
+std::string rejected_text(const engine::LinkCounters& counters) {
+  std::string text;
+  for (std::size_t k = 1; k < counters.rejected.size(); ++k) {
+    if (counters.rejected[k] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", counters.rejected[k],
+                        engine::packet_problem_name(static_cast<engine::PacketProblem>(k)));
+  }
+  return text.empty() ? text : text + ")";
+}
+
+}  // namespace
+
+void add_live_options(CLI::App& command, LiveOptions& o) {
+  const std::string flag = fmt::format("--lcm{{{}}}", engine::kLiveUrl);
+  CLI::Option* const lcm =
+      command.add_flag(flag, o.url,
+                       fmt::format("Can be tuned while it runs (footfall tune), at --lcm=URL or {}",
+                                   engine::kLiveUrl));
+  CLI::Option* const key =
+      command
+          .add_option("--lcm-key", o.key,
+                      "File with the key that edits need (footfall tune key FILE makes one); "
+                      "without it, the user's own")
+          ->needs(lcm);
+  command
+      .add_flag("--lcm-open", o.open, "Edits need no key: everybody in reach may change the run")
+      ->needs(lcm)
+      ->excludes(key);
+  o.prefix = engine::kLivePrefix;
+  command.add_option("--lcm-prefix", o.prefix, "First part of the channels' names")
+      ->needs(lcm)
+      ->capture_default_str();
+  command
+      .add_option("--telemetry", o.telemetry,
+                  "Telemetry with --lcm, per second of the run; 0: none")
+      ->needs(lcm)
+      ->capture_default_str();
+}
+
+void join_live_url(int& argc, char** argv) {
+  static std::string joined;
+  for (int i = 1; i + 1 < argc; ++i) {
+    if (std::string_view(argv[i]) != "--lcm" ||
+        std::string_view(argv[i + 1]).find("://") == std::string_view::npos) {
+      continue;
+    }
+    joined = std::string("--lcm=") + argv[i + 1];
+    argv[i] = joined.data();
+    for (int k = i + 1; k < argc; ++k) argv[k] = argv[k + 1];  // the last one is null
+    --argc;
+    return;
+  }
+}
+
+std::unique_ptr<engine::LcmLink> make_link(const LiveOptions& options, engine::ControlLoop& loop) {
+  if (options.url.empty()) return nullptr;
+  engine::LinkSettings settings;
+  settings.url = options.url;
+  settings.prefix = options.prefix;
+  settings.telemetry = rate_of(options.telemetry);
+  if (!options.open) {
+    settings.key = options.key.empty() ? engine::default_key() : engine::read_key(options.key);
+  } else {
+    std::fprintf(stderr,
+                 "footfall: warning: --lcm-open: everybody who reaches %s may change this run\n",
+                 options.url.c_str());
+  }
+  try {
+    return std::make_unique<engine::LcmLink>(loop, settings);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(std::string("--lcm: error: ") + error.what());
+  }
+}
+
+std::string live_text(const LiveOptions& options, const engine::LcmLink& link) {
+  const engine::LinkCounters counters = link.counters();
+  return fmt::format(
+      "  live         {} ({}_*): {} edits applied, {} refused; {} packets rejected{}\n",
+      options.url, options.prefix, counters.requests.applied, counters.requests.refused,
+      counters.rejected_in_all(), rejected_text(counters));
+}
+
+nlohmann::ordered_json live_json(const LiveOptions& options, const engine::LcmLink& link) {
+  const engine::LinkCounters counters = link.counters();
+  nlohmann::ordered_json rejected = nlohmann::ordered_json::object();
+  for (std::size_t k = 1; k < counters.rejected.size(); ++k) {
+    std::string name = engine::packet_problem_name(static_cast<engine::PacketProblem>(k));
+    std::ranges::replace(name, ' ', '_');
+    rejected[name] = counters.rejected[k];
+  }
+  return {{"url", options.url},
+          {"prefix", options.prefix},
+          {"packets", {{"HELLO", counters.heard_hello}, {"REQUEST", counters.heard_request}}},
+          {"requests", counters.requests.requests},
+          {"applied", counters.requests.applied},
+          {"refused", counters.requests.refused},
+          {"repeated", counters.requests.repeated},
+          {"hellos", counters.hellos},
+          {"rejected", rejected},
+          {"strange_datagrams", counters.strange},
+          {"telemetry", counters.telemetry},
+          {"telemetry_dropped", counters.dropped}};
+}
+
+}  // namespace footfall::apps

@@ -1,0 +1,98 @@
+// CLI11 declarations of `footfall sweep`; see sweep_options.h.
+#include "apps/suites/sweep_options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/run/run_setup.h"
+#include "lab/process/pool.h"
+
+namespace footfall::apps {
+namespace {
+
+// Options that a sweep file says itself.
+void add_plan_options(CLI::App& command, SweepCommandOptions& o) {
+  lab::SweepArguments& p = o.plan;
+  const auto list = [&](const char* name, std::vector<std::string>& to, const char* doc) {
+    command.add_option(name, to, doc)->expected(1)->take_all()->group("What is run");
+  };
+  const auto one = [&](const char* name, std::string& to, const char* doc) {
+    command.add_option(name, to, doc)->group("What is run");
+  };
+  list("--vary", p.vary, "NAME=130ms..160ms:4 or NAME=[200, 220]: values, each with each");
+  list("--zip", p.zip, "NAME=[1, 2]: lists of equal length, the first with the first");
+  list("--sample", p.sample,
+       "NAME=uniform(1, 2), log_uniform(1, 2), normal(1.5, 0.1): drawn at random");
+  one("--count", p.count, "How many draws (default 20)");
+  one("--sample-seed", p.sample_seed, "Other draws (default 1)");
+  one("--method", p.method, "random or latin_hypercube");
+  one("--seeds", p.seeds, "100..119 or 1,2,3: seeds of everything random in the world");
+  one("--faults", p.faults, "none,mocap.dropout@5s:2s: what fails (from 2 s to the end)");
+  one("--worlds,--world", p.worlds, "flat,slippery: in which worlds");
+  one("--robot", p.robot, "Robot, instead of the behavior's own");
+  one("--for", p.duration, "How long a run lasts (default 20 s, or the scenario's)");
+  one("--timeout", p.timeout, "Wall time of one run");
+  list("--figure", p.figures, "Figure of merit in the report, e.g. error.pitch.max");
+}
+
+}  // namespace
+
+void add_sweep_options(CLI::App& command, SweepCommandOptions& o) {
+  command.add_option("WHAT", o.plan.what, "Sweep file, scenario, or behavior (file or name)");
+  add_plan_options(command, o);
+  command.add_option("--out", o.out, "Folder of the results (default: out/sweep/NAME)");
+  command.add_option("-j,--jobs", o.jobs, "Runs at once (default: one for each processor)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--shard", o.shard_text,
+                     "I/N: every N-th run from the I-th on, in a file of its own");
+  command.add_flag("--extend", o.extend, "The plan has changed: keeps runs that are done");
+  command.add_flag("--keep-logs", o.keep_logs, "Keeps the logs of runs that did not pass");
+  command.add_flag("--no-report", o.no_report, "No report page at the end");
+  command.add_flag("--list", o.list, "Only prints the command of each run");
+  command.add_option("--save", o.save, "Only writes the sweep file that says the same");
+  command.add_option("--merge", o.merge, "Joins the shards in this folder, then reports");
+  command.add_option("--report", o.report, "Writes the report of what is in this folder");
+  command.add_option("--csv", o.csv, "Writes the results in this folder as sweep.csv");
+  command.add_option("--slurm", o.slurm, "Writes a script for Slurm: a job array of N shards")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--template", o.slurm_template,
+                     "Template of that script (default: lab/slurm/array.sh)");
+  command.add_option("--program", o.program, "The footfall that runs them (default: this one)");
+  command.footer(
+      "The same command goes on where an earlier one was stopped or killed.\n"
+      "Example: footfall sweep balance_best --vary lift_time=130ms..160ms:4 --seeds 1..10 --for "
+      "10s");
+}
+
+void finish_sweep_options(SweepCommandOptions& o) {
+  const lab::SweepArguments& p = o.plan;
+  if (p.sample.empty() && !(p.count + p.sample_seed + p.method).empty()) {
+    throw InputError(
+        "--count: error: --count, --sample-seed, --method say how to draw: give --sample");
+  }
+  if (!o.shard_text.empty()) {
+    int used = 0;
+    const bool read =
+        std::sscanf(o.shard_text.c_str(), "%d/%d%n", &o.shard, &o.shards, &used) == 2;  // NOLINT
+    if (!read || used != static_cast<int>(o.shard_text.size()) || o.shard < 1 ||
+        o.shard > o.shards || o.shards > 100'000) {
+      throw InputError("--shard: error: expected I/N with I from 1 to N, got '" + o.shard_text +
+                       "'");
+    }
+    if (o.extend) {
+      throw InputError(
+          "--extend: error: not with --shard, where a run may have moved to another shard: merge "
+          "first, then extend the whole");
+    }
+  }
+  if (o.jobs == 0) o.jobs = lab::processor_count();
+  if (o.program.empty()) {
+    std::error_code error;
+    o.program = std::filesystem::read_symlink("/proc/self/exe", error).string();
+    o.own_program = !error;
+    if (error) o.program = "footfall";
+  }
+}
+
+}  // namespace footfall::apps

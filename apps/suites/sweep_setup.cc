@@ -1,0 +1,73 @@
+// See sweep_setup.h.
+#include "apps/suites/sweep_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "apps/shared/commands.h"
+#include "apps/shared/output_file.h"
+#include "lab/scenario/loader.h"
+#include "lab/sweep/plan/check.h"
+#include "lab/sweep/plan/files.h"
+#include "sim/world/description.h"
+
+namespace footfall::apps {
+namespace {
+
+void load_and_check_world(const std::string& path, core::Diagnostics& diagnostics) {
+  const sim::WorldDescription world = sim::load_world(path, diagnostics);
+  if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+}
+
+// A file beside the one that names it, or one that is found by name.
+std::string find_world(const std::string& beside, const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(beside).parent_path();
+  const std::string path = sim::find_world_file((folder / name).string(), {});
+  return path.empty() ? sim::find_world_file(name, search_path()) : path;
+}
+
+// Parameters of the world need a file to be laid over.
+void name_default_world(lab::SweepDescription& sweep, core::Diagnostics& diagnostics) {
+  const bool needed = std::ranges::any_of(
+      sweep.axes, [](const lab::SweepAxis& axis) { return lab::is_world_axis(axis.name); });
+  if (!needed || !sweep.worlds.empty()) return;
+  sweep.worlds = {"flat"};
+  sweep.world_marks = {core::Mark{}};
+  if (sweep.scenario.empty()) return;
+  const auto scenario = lab::load_scenario(sweep.scenario, {search_path()}, diagnostics);
+  if (!scenario.world.empty()) sweep.worlds = {find_world(scenario.path, scenario.world)};
+}
+
+}  // namespace
+
+PreparedSweep prepare_sweep(lab::SweepDescription sweep, core::Diagnostics& diagnostics) {
+  PreparedSweep prepared;
+  if (!diagnostics.has_errors()) name_default_world(sweep, diagnostics);
+  for (std::size_t w = 0; w < sweep.worlds.size(); ++w) {
+    prepared.worlds.push_back(find_world(sweep.path, sweep.worlds[w]));
+    if (!prepared.worlds.back().empty()) continue;
+    diagnostics.error(
+        sweep.world_marks[w], "cannot-read",
+        fmt::format("unknown world '{}': no such file here, and no "
+                    "sim/worlds/{}.yaml in {}",
+                    sweep.worlds[w], sweep.worlds[w], fmt::join(search_path(), ", ")));
+  }
+  const lab::SweepCheckOptions options = {search_path(), prepared.worlds, load_and_check_world};
+  prepared.inputs = lab::check_sweep(sweep, options, diagnostics);
+  prepared.sweep = std::move(sweep);
+  return prepared;
+}
+
+void check_sweep_file(const std::string& path, core::Diagnostics& diagnostics) {
+  prepare_sweep(lab::load_sweep(path, {search_path()}, diagnostics), diagnostics);
+}
+
+std::string digest_of_files(const std::vector<std::string>& paths) {
+  std::string all;
+  for (const std::string& path : paths) all += lab::digest(read_whole_file(path));
+  return lab::digest(all);
+}
+
+}  // namespace footfall::apps

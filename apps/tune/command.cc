@@ -1,0 +1,157 @@
+// CLI11 declarations of `footfall tune`.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <stdexcept>
+
+#include "apps/shared/commands.h"
+#include "apps/tune/model/options.h"
+#include "apps/tune/model/quantity.h"
+
+namespace footfall::apps {
+namespace {
+
+using Options = std::shared_ptr<TuneOptions>;
+
+// A time with its unit into `seconds`.
+void add_time(CLI::App& command, const std::string& name, double& seconds,
+              const std::string& text) {
+  command.add_option_function<std::string>(
+      name,
+      [name, &seconds](const std::string& value) {
+        const auto read = read_duration(value);
+        if (!read) {
+          throw CLI::ValidationError(name,
+                                     fmt::format("expected a time such as 500ms, got '{}'", value));
+        }
+        seconds = *read;
+      },
+      text);
+}
+
+// Does it; what goes wrong is said on stderr.
+int run_action(const TuneOptions& options, int (*action)(const TuneOptions&)) {
+  try {
+    return action(options);
+  } catch (const InputError& error) {
+    std::fputs(error.what(), stderr);
+    return kBadInput;
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return kMachineFailed;
+  }
+}
+
+CLI::App* add_action(CLI::App& tune, const Options& options, int& exit_code,
+                     const std::string& name, const std::string& text,
+                     int (*action)(const TuneOptions&)) {
+  CLI::App* command = tune.add_subcommand(name, text);
+  command->fallthrough();
+  command->callback([options, &exit_code, action] { exit_code = run_action(*options, action); });
+  return command;
+}
+
+void add_edits(CLI::App& tune, const Options& o, int& exit_code) {
+  const auto add_common = [&](CLI::App* command) {
+    command->add_option("--raise", o->events, "An event, in the same tick; may be repeated")
+        ->allow_extra_args(false);
+    command->add_option("--revision", o->revision,
+                        "Refused unless this many changes were made before (see list --json)");
+    command->add_flag("--json", o->json, "The answer as one JSON object");
+  };
+  CLI::App* set = add_action(tune, o, exit_code, "set",
+                             "Changes values: all of them in one tick, or none", tune_set);
+  set->add_option("NAME=VALUE", o->names, "lift_time=150ms, goal.x=0.2, \"NAME=[220, 237, 400]\"")
+      ->required();
+  add_time(*set, "--over", o->over, "The values move there in that time");
+  add_common(set);
+  set->footer("Example: footfall tune set lift_time=150ms land_time=150ms --over 0.5s");
+  CLI::App* ramp =
+      add_action(tune, o, exit_code, "ramp", "The same, with the time that it takes", tune_set);
+  ramp->add_option("NAME=VALUE", o->names, "As for set")->required();
+  add_time(*ramp, "--over", o->over, "The values move there in that time");
+  ramp->get_option("--over")->required();
+  add_common(ramp);
+  ramp->footer("Example: footfall tune ramp goal.x=0.5m --over 3s");
+  for (const bool redo : {false, true}) {
+    CLI::App* command = add_action(
+        tune, o, exit_code, redo ? "redo" : "undo",
+        redo ? "Makes the change that was undone last again"
+             : "Takes the newest change back, whoever made it",
+        redo ? +[](const TuneOptions& options) { return tune_undo(options, true); }
+             : +[](const TuneOptions& options) { return tune_undo(options, false); });
+    command->add_option("N", o->count, "How many")->check(CLI::Range(1, 1000));
+    command->add_flag("--json", o->json, "Each answer as a JSON object");
+  }
+  CLI::App* raise =
+      add_action(tune, o, exit_code, "raise", "Raises events of the behavior", tune_raise);
+  raise->add_option("EVENT", o->names, "In this order, in one tick")->required();
+  raise->add_flag("--json", o->json, "The answer as one JSON object");
+}
+
+void add_views(CLI::App& tune, const Options& o, int& exit_code) {
+  CLI::App* list = add_action(tune, o, exit_code, "list",
+                              "Live parameters and gains with values, ranges, meaning", tune_list);
+  list->add_option("GLOB", o->names, "Only these, with * and ?, or a part of the name");
+  list->add_flag("--names", o->only_names, "Names alone");
+  list->add_flag("--json", o->json, "One JSON object, values in SI");
+  list->footer("Example: footfall tune list \"gains.single.*\"");
+  CLI::App* get = add_action(tune, o, exit_code, "get",
+                             "NAME=VALUE lines, exact, as `set` takes them", tune_get);
+  get->add_option("NAME", o->names, "Names or patterns")->required();
+  get->add_flag("--json", o->json, "One JSON object, values in SI");
+  CLI::App* diff =
+      add_action(tune, o, exit_code, "diff", "What differs from the behavior's file", tune_diff);
+  diff->add_flag("--json", o->json, "One JSON object, values in SI");
+  CLI::App* watch =
+      add_action(tune, o, exit_code, "watch",
+                 "Prints signals and values as they come, and everybody's edits", tune_watch);
+  watch->add_option("NAME", o->names, "Signals, parameters, gains; patterns");
+  watch->add_flag("--json", o->json, "One JSON object a line");
+  add_time(*watch, "--for", o->duration, "Ends after that time (otherwise with Ctrl-C)");
+  add_time(*watch, "--every", o->every, "At most one line in that time");
+  watch->footer("Example: footfall tune watch com.pos.z lift_time --every 100ms");
+}
+
+void add_files(CLI::App& tune, const Options& o, int& exit_code) {
+  CLI::App* save = add_action(tune, o, exit_code, "save",
+                              "Writes the values in force into the behavior's file", tune_save);
+  save->add_option("NAME", o->names, "Only these; names or patterns");
+  save->add_option("--to", o->file,
+                   "Into this file: an overlay, which begins with `base:`, or one that is there");
+  save->add_flag("--yes", o->yes, "Does not ask");
+  save->add_flag("--dry-run", o->dry_run, "Shows what would change, writes nothing");
+  save->footer("Example: footfall tune save --to mine.yaml");
+  CLI::App* key = add_action(tune, o, exit_code, "key",
+                             "Makes a key for people on other machines or accounts", tune_key);
+  key->add_option("FILE", o->file, "A new file; only its owner may read it")->required();
+  key->footer("Example: footfall tune key ~/robot.key");
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app, int& exit_code) {
+  auto o = std::make_shared<TuneOptions>();
+  CLI::App* tune = app.add_subcommand(
+      "tune", "Changes parameters and gains of a run with --lcm: full screen, or a sub-command");
+  tune->require_subcommand(0, 1);
+  tune->add_option("--url", o->url, "LCM URL (default: this host alone, as `run --lcm`)");
+  tune->add_option("--key", o->key, "File with the key (default: the user's own)");
+  tune->add_flag("--open", o->open, "Without a key, for `run --lcm-open`");
+  tune->add_option("--prefix", o->prefix, "Of the channels, as `run --lcm-prefix`")
+      ->capture_default_str();
+  tune->add_option("--who", o->who, "What others and the log call you (default: user@host)");
+  add_time(*tune, "--timeout", o->timeout, "How long to wait for an answer (default 3 s)");
+  add_views(*tune, o, exit_code);
+  add_edits(*tune, o, exit_code);
+  add_files(*tune, o, exit_code);
+  tune->footer(
+      "Exit codes: 0 done, 1 refused, 2 the input is wrong, 3 no engine answers.\n"
+      "Example: footfall tune set lift_time=150ms");
+  tune->callback([tune, o, &exit_code] {
+    if (tune->get_subcommands().empty()) exit_code = run_action(*o, tune_screen);
+  });
+}
+
+}  // namespace footfall::apps

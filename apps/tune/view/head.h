@@ -1,0 +1,18 @@
+// How the robot does, in a few lines: for the head of the full screen and for `watch`.
+#pragma once
+
+#include "apps/tune/model/model.h"
+#include "apps/tune/view/picture.h"
+
+namespace footfall::apps {
+
+inline constexpr double kLongSilence = 1.5;  // s: the engine tells its values twice a second
+
+// `running`, `fallen`, ...; empty: nothing was heard yet.
+std::string condition_text(const TuneModel& model);
+// The active atomic states, blanks between.
+std::string states_text(const TuneModel& model);
+// Behavior, robot, time, condition; state; feet and tick; tasks; faults.
+std::vector<StyledLine> head_lines(const TuneModel& model, double silence, int width);
+
+}  // namespace footfall::apps

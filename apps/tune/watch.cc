@@ -1,0 +1,125 @@
+// `footfall tune watch`: signals and values as they come, and everybody's edits.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "apps/shared/commands.h"
+#include "apps/tune/model/options.h"
+#include "apps/tune/session.h"
+#include "apps/tune/view/text.h"
+
+namespace footfall::apps {
+namespace {
+
+volatile std::sig_atomic_t stop_watching = 0;
+
+// Puts the old ones back when it goes.
+class StopSignals {
+ public:
+  StopSignals() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { stop_watching = 1; };
+    ::sigaction(SIGINT, &action, &interrupt_);
+    ::sigaction(SIGTERM, &action, &terminate_);
+    ::sigaction(SIGPIPE, nullptr, &pipe_);
+    ::signal(SIGPIPE, SIG_IGN);  // `| head` ends it, without a message
+  }
+  ~StopSignals() {
+    ::sigaction(SIGINT, &interrupt_, nullptr);
+    ::sigaction(SIGTERM, &terminate_, nullptr);
+    ::sigaction(SIGPIPE, &pipe_, nullptr);
+  }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+ private:
+  struct sigaction interrupt_ {
+  }, terminate_{}, pipe_{};
+};
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// False: nobody reads any more.
+bool print_out(const std::string& text) {
+  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+}
+
+std::string json_line(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+struct Watch {
+  std::vector<WatchColumn> columns;
+  bool json = false;
+  double every = 0.0;       // s of the run between lines
+  double next_line = -1.0;  // s of the run
+  std::int64_t session = 0, generation = 0;
+};
+
+// The samples and edits that came, in lines.
+bool print_samples(TuneSession& session, Watch& watch) {
+  TuneModel& model = session.model;
+  const std::size_t notes = model.notes.size();
+  session.client.poll(0.1);
+  take_catalogue(model, session.client.catalogue());
+  take_values(model, session.client.values());
+  for (const auto& answer : session.client.take_answers()) {
+    take_answer(model, answer, session.client.client());
+  }
+  bool good = true;
+  for (std::size_t k = notes; k < model.notes.size(); ++k) {
+    good = good &&
+           print_out(watch.json ? json_line(note_json(model.notes[k])) : note_line(model.notes[k]));
+  }
+  for (const auto& told : session.client.take_telemetry()) {
+    take_telemetry(model, told);
+    if (told.time < watch.next_line && told.session == watch.session) continue;
+    watch.next_line = told.time + watch.every * (1.0 - 1e-9);
+    good = good && print_out(watch.json ? json_line(watch_json(model, watch.columns))
+                                        : watch_line(model, watch.columns));
+  }
+  return good;
+}
+
+// The columns of the engine's catalogue; false: a name is not in it, said on stderr.
+bool begin_columns(const TuneModel& model, const TuneOptions& options, Watch& watch) {
+  std::vector<std::string> problems;
+  watch.columns = watch_columns(model, options.names, problems);
+  for (const std::string& problem : problems) fmt::print(stderr, "error: {}\n", problem);
+  watch.session = model.catalogue.session;
+  watch.generation = model.catalogue.generation;
+  if (problems.empty() && !watch.json) print_out(watch_head(watch.columns));
+  return problems.empty();
+}
+
+}  // namespace
+
+int tune_watch(const TuneOptions& options) {
+  const auto session = open_session(options);
+  if (session == nullptr) return kMachineFailed;
+  Watch watch;
+  watch.json = options.json;
+  watch.every = options.every;
+  if (!begin_columns(session->model, options, watch)) return kBadInput;
+  const StopSignals signals;
+  stop_watching = 0;
+  const double end = seconds_now() + options.duration;
+  while (stop_watching == 0 && (options.duration == 0.0 || seconds_now() < end)) {
+    if (!print_samples(*session, watch)) return kGood;
+    const auto& told = session->model.catalogue;
+    const bool other = told.session != watch.session || told.generation != watch.generation;
+    if (other && !begin_columns(session->model, options, watch)) return kBadInput;
+    if (session->client.silence() > options.timeout) {
+      fmt::print(stderr, "error: {}\n", session->client.why_not());
+      return kMachineFailed;
+    }
+  }
+  return kGood;
+}
+
+}  // namespace footfall::apps
