@@ -38,7 +38,7 @@ struct TestOptions {
 // The places where a project keeps its scenarios.
 std::vector<std::string> default_folders() {
   std::vector<std::string> folders;
-  for (const char* folder : {"tests/regression", "behaviors"}) {
+  for (const char* folder : {"tests/runs/regression", "behaviors"}) {
     std::error_code ignored;
     if (fs::is_directory(folder, ignored)) folders.emplace_back(folder);
   }
@@ -122,7 +122,7 @@ std::vector<lab::SuiteScenario> choose(const TestOptions& options) {
       throw InputError(error.what());
     }
     const std::string where = places.empty()
-                                  ? "no folder tests/regression or behaviors here"
+                                  ? "no folder tests/runs/regression or behaviors here"
                                   : fmt::format("no scenario in {}", fmt::join(places, ", "));
     if (files.empty()) {
       throw InputError("test: error: " + where + ": expected files whose first key is `scenario`");
@@ -304,7 +304,7 @@ int test(const TestOptions& options) {
 void add_options(CLI::App& command, TestOptions& o) {
   command.add_option(
       "SCENARIO", o.paths,
-      "Scenario files, or folders of them (default: tests/regression and behaviors)");
+      "Scenario files, or folders of them (default: tests/runs/regression and behaviors)");
   command.add_option("-j,--jobs", o.jobs, "Runs at once (default: one for each processor)")
       ->check(CLI::PositiveNumber);
   command.add_option("--filter", o.filter,

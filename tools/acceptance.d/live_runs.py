@@ -61,7 +61,7 @@ class Engine:
 
 
 def program(name, *arguments, url, timeout=600, before=()):
-    """Runs tests/live/NAME to its end; its JSON object. `before`: words in front of the command."""
+    """Runs tests/runs/live/NAME to its end; its JSON object. `before`: words in front of the command."""
     path = PROGRAMS / name
     if not path.exists():
         give_up(f"{path} is not built")

@@ -1,0 +1,57 @@
+// Each key of the language is one that the loader reads: a file that uses all of them loads, and
+// with any of its values broken it does not.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "behaviors/language/language.h"
+#include "tests/language/keys/key_uses.h"
+#include "tests/unit/behaviors/behavior_test_support.h"
+
+namespace footfall::tests {
+namespace {
+
+using behaviors::kBehaviorFile;
+
+std::string read(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(std::string(FOOTFALL_SOURCE_DIR) + path).rdbuf();
+  return text.str();
+}
+
+const std::string kEveryKey = read("/tests/language/keys/behavior.yaml");
+
+// What loading the text reports, as if it stood in the file's folder (there is a script beside it).
+std::string said_of(const std::string& text) {
+  core::Diagnostics diagnostics;
+  behaviors::load_behavior_text(text,
+                                std::string(FOOTFALL_SOURCE_DIR) + "/tests/language/keys/b.yaml",
+                                options_for_tests(), diagnostics);
+  return diagnostics.to_string();
+}
+
+TEST(EveryKey, OfTheLanguageIsInAFileThatLoads) {
+  EXPECT_EQ(said_of(kEveryKey).find("error:"), std::string::npos) << said_of(kEveryKey);
+  core::Diagnostics diagnostics;
+  const core::YamlNode root = core::load_yaml_text(kEveryKey, "b.yaml", diagnostics);
+  // A base is another file (yaml_test.cc).
+  EXPECT_EQ(unused_keys(kBehaviorFile, key_uses(kBehaviorFile, root)),
+            std::vector<std::string>{"behavior.base"});
+}
+TEST(EveryKey, OfTheLanguageIsReadSoThatAWrongValueIsRefused) {
+  core::Diagnostics diagnostics;
+  const core::YamlNode root = core::load_yaml_text(kEveryKey, "b.yaml", diagnostics);
+  int count = 0;
+  for (const KeyUse& use : key_uses(kBehaviorFile, root)) {
+    if (!use.value->is_scalar() || may_be_anything(use)) continue;
+    const std::string said = said_of(broken(kEveryKey, *use.value));
+    EXPECT_NE(said.find("error:"), std::string::npos)
+        << use.key << " at line " << use.value->mark.line << " is not read";
+    ++count;
+  }
+  EXPECT_GT(count, 90);
+}
+
+}  // namespace
+}  // namespace footfall::tests

@@ -1,0 +1,252 @@
+// Internal forces, references, planners and torque steps as the checks judge them. Oracles: statics
+// of two feet by hand, the pendulum's step-to-step map as a matrix. Equations: [Kim16] eqs.
+// (7)-(10) with E10, eqs. (19), (21) with E1.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <filesystem>
+
+#include "behaviors/check/physics/law.h"
+#include "behaviors/check/physics/postures.h"
+#include "behaviors/machine/planner_calls.h"
+#include "tests/unit/behaviors/check/physics_test_support.h"
+
+namespace footfall::tests {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string squeezing(const std::string& reference, const std::string& parameters = "") {
+  return standing("[right_foot, left_foot]", dual_tasks(),
+                  "    internal: {tension: {between: [right_foot, left_foot], reference: " +
+                      reference + "}}\n" + parameters);
+}
+
+// At the nominal posture the centre of mass is over the middle of the feet, which stand beside each
+// other: each carries half of the weight, and the internal force is all that pushes sideways.
+TEST(PhysicsForces, TheLawAtRestCarriesHalfTheWeightOnEachFoot) {
+  const auto b = load(squeezing("20 N"));
+  model::ControlModel model(b->robot);
+  behaviors::PhysicsLaw law(*b, model);
+  model.update(behaviors::physics_postures(b->robot).front());
+  const auto rest = law.rest(b->controls.front(), {20.0});
+  const double half = 0.5 * model.mass() * model.gravity();
+  for (std::size_t foot = 0; foot < 2; ++foot) {
+    EXPECT_NEAR(rest.forces[foot][2], half, 0.01 * half);  // posture given to 1e-5 deg, CoM to 1 mm
+    EXPECT_NEAR(rest.forces[foot][1], foot == 0 ? 20.0 : -20.0, 1e-6);  // ground on robot: inwards
+  }
+}
+
+TEST(PhysicsForces, AnInternalForceBeyondFrictionIsRefusedAtItsReference) {
+  const auto b = load(squeezing("20 N"));
+  const model::ControlModel model(b->robot);
+  const double limit = 0.9 * 0.5 * model.mass() * model.gravity();  // by hand, as above
+  EXPECT_GT(100.0, limit);  // the paper's 100 N a foot need a valley
+  const std::string text = squeezing("100 N");
+  EXPECT_THAT(
+      physics(text),
+      StartsWith(place_of(text, "100 N") +
+                 "error: internal force 'tension' of 100 N at each foot leaves the friction "
+                 "cone: standing still, "));
+  EXPECT_THAT(physics(text), HasSubstr("would slip: 100 N along the ground, at most 0.9 x "));
+  EXPECT_EQ(physics(squeezing("20 N")), "");
+  EXPECT_THAT(physics(squeezing("-100 N")), HasSubstr("error: internal force"));
+}
+
+TEST(PhysicsForces, TheSumConventionCountsBothFeet) {
+  EXPECT_EQ(physics(squeezing("40 N, convention: sum")), "");
+  EXPECT_THAT(physics(squeezing("200 N, convention: sum")), HasSubstr("of 100 N at each foot"));
+}
+
+TEST(PhysicsForces, AnEditAtTheEndOfItsRangeIsWarnedAbout) {
+  const std::string text = "parameters: {push: {value: 20 N, range: [0 N, 200 N], live: true}}\n";
+  const std::string said = physics(squeezing("$push", text));
+  EXPECT_THAT(said, HasSubstr("warning: internal force 'tension' of 200 N at each foot leaves the "
+                              "friction cone at the end of the range of 'push'"));
+  EXPECT_THAT(said, testing::Not(HasSubstr("error")));
+}
+
+TEST(PhysicsForces, FrictionIsTheRobotFiles) {
+  const std::string folder = testing::TempDir();
+  const auto slippery = with_contacts(folder, "{site: right_foot, radius: 25 mm, friction: 0.1}",
+                                      "{site: left_foot, radius: 25 mm, friction: 0.1}");
+  EXPECT_THAT(physics(squeezing("20 N"), slippery), HasSubstr("at most 0.1 x "));
+}
+
+TEST(PhysicsContacts, SurfacesAreRefusedByName) {
+  const auto flat = with_contacts(testing::TempDir(), "{site: right_foot, type: surface}",
+                                  "{site: left_foot, type: fixed}");
+  const std::string said = physics(standing("[right_foot, left_foot]", dual_tasks()), flat);
+  EXPECT_THAT(said, HasSubstr("other.yaml:4:40: error: contact 'right_foot' is of type 'surface', "
+                              "which is not available in this version"));
+  EXPECT_THAT(said, HasSubstr("contact 'left_foot' is of type 'fixed'"));
+}
+
+// --- references
+
+std::string height_of(const std::string& reference) {
+  return standing("[right_foot, left_foot]",
+                  "      height: {type: com_position, axes: [z], reference: " + reference +
+                      ", gains: {kp: 1}}\n" + attitude("[yaw, pitch, roll]") + rest());
+}
+
+TEST(PhysicsReach, AHeightThatNoLegAllowsIsRefused) {
+  const std::string text = height_of("9.1 m");
+  EXPECT_THAT(physics(text), StartsWith(place_of(text, "9.1 m") +
+                                        "error: task 'height' asks for a centre of mass at a "
+                                        "height of 9.1 m: on right_foot and left_foot it can be "));
+  EXPECT_THAT(physics(height_of("\"= entry + 60 m\"")), HasSubstr("error: task 'height'"));
+  EXPECT_THAT(physics(height_of("-0.9 m")), HasSubstr("that is in the ground"));
+}
+
+// Straight legs carry the hips 0.95785 m above the ground (robots/hume/hume.xml), the centre of
+// mass higher still: up to there nothing may be refused.
+TEST(PhysicsReach, WhatStraightLegsReachIsNotRefused) {
+  EXPECT_EQ(physics(height_of("0.91 m")), "");
+  EXPECT_EQ(physics(height_of("1.0 m")), "");
+  EXPECT_EQ(physics(height_of("\"= entry + 6 cm\"")), "");
+  EXPECT_EQ(physics(height_of("{trajectory: minimum_jerk, to: \"= entry - 3 cm\", over: 1 s}")),
+            "");
+}
+
+TEST(PhysicsReach, JointsHaveLimitsAndTheBodyMayNotTiltAsIfFallen) {
+  const std::string knee =
+      "      knee: {type: joint_posture, joints: [left_knee], priority: 2, reference: 210 deg, "
+      "gains: "
+      "{kp: 1}}\n";
+  const std::string text = standing("[right_foot, left_foot]", dual_tasks() + knee);
+  EXPECT_THAT(physics(text),
+              StartsWith(place_of(text, "210 deg") +
+                         "error: task 'knee' asks for 210 deg of 'left_knee', whose limits are -20 "
+                         "to 200 deg"));
+  const std::string tilt =
+      "      lean: {type: body_orientation, axes: [roll], reference: 1 rad, gains: {kp: 1}}\n";
+  EXPECT_THAT(physics(standing("[right_foot, left_foot]", height() + tilt + rest())),
+              HasSubstr("error: task 'lean' asks for roll 57.3 deg"));
+}
+
+// --- planners
+
+std::string walking(const std::string& kappa, const std::string& parameters = "") {
+  return "behavior: 1\nrobot: hume\n" + parameters +
+         "planners: {foot: {type: velocity_reversal, kappa: " + kappa +
+         ", reversal: 185 ms}}\n"
+         "stacks:\n  single:\n    contacts: [right_foot]\n    tasks:\n"
+         "      height: {type: com_position, axes: [z], reference: 0.935 m, gains: {kp: 1}}\n" +
+         attitude("[pitch, roll]") + swing() + R"(machine:
+  stack: single
+  states:
+    ready: {after: 40 ms, to: lift}
+    lift:
+      invoke: [{planner: foot, with: {stance: right_foot, swing: left_foot, switch_in: "= 295 ms - t"}}]
+      after: 295 ms
+      to: ready
+)";
+}
+
+double printed_eigenvalue(const std::string& text) {
+  const std::string before = " is ";
+  const std::size_t found = text.find(before, text.find("an eigenvalue"));
+  return found == std::string::npos ? 0.0 : std::stod(text.substr(found + before.size()));
+}
+
+// About the goal, from switch to switch: the foot goes to x_p = (1 + k) x + coth(w t')/w v, then
+// the pendulum moves for T about it.
+double largest_eigenvalue(double kappa, double reversal, double height, double T) {
+  const double w = std::sqrt(9.81 / height);
+  const double C = std::cosh(w * T), S = std::sinh(w * T);
+  Eigen::Matrix2d A;
+  A << C, S / w, w * S, C;
+  const Eigen::Vector2d B(1.0 - C, -w * S);
+  const Eigen::RowVector2d K(1.0 + kappa, 1.0 / (w * std::tanh(w * reversal)));
+  const auto values = Eigen::EigenSolver<Eigen::Matrix2d>(A + B * K).eigenvalues();
+  return std::max(std::abs(values(0)), std::abs(values(1)));
+}
+
+TEST(PhysicsPlanner, ThePrintedSignOfKappaIsRejectedWithItsEigenvalue) {
+  const std::string text = walking("{value: -0.4, range: [-1, 1]}");
+  const std::string said = physics(text);
+  EXPECT_THAT(said,
+              StartsWith(place_of(text, "{value: -0.4") + "error: planner 'foot' diverges: "));
+  EXPECT_THAT(said, HasSubstr("height h 0.935 m, step time T 0.335 s"));
+  EXPECT_NEAR(printed_eigenvalue(said), 1.28, 0.01);  // the bar
+  EXPECT_NEAR(printed_eigenvalue(said), largest_eigenvalue(-0.4, 0.185, 0.935, 0.335), 5e-4);
+}
+
+TEST(PhysicsPlanner, TheCorrectedSignIsClean) {
+  EXPECT_LT(largest_eigenvalue(0.4, 0.185, 0.935, 0.335), 1.0);
+  EXPECT_EQ(physics(walking("0.4")), "");
+  EXPECT_EQ(physics(walking("0")), "");  // steps drift, they do not grow
+}
+
+TEST(PhysicsPlanner, ANegativeKappaNeedsARangeThatAllowsIt) {
+  EXPECT_THAT(problems(walking("-0.4")), HasSubstr("error: kappa -0.4 is outside 0 .. 1"));
+  EXPECT_THAT(problems(walking("$k", "parameters: {k: -0.4}\n")), HasSubstr("is outside 0 .. 1"));
+  const std::string wide = "parameters: {k: {value: [-0.4, -0.4], range: [-1, 1]}}\n";
+  EXPECT_EQ(problems(walking("$k", wide)).find(": error: "), std::string::npos);
+  EXPECT_THAT(physics(walking("$k", wide)), HasSubstr("error: planner 'foot' diverges"));
+}
+
+TEST(PhysicsPlanner, ALiveKappaIsReadWhenThePlannerIsAskedAndWarnedAboutAtItsEnds) {
+  const std::string live = "parameters: {k: {value: 0.4, range: [-1, 1], live: true}}\n";
+  const std::string text = walking("$k", live);
+  EXPECT_THAT(physics(text), HasSubstr("warning: planner 'foot' diverges at the end of the range "
+                                       "of 'k'"));
+  const auto b = load(text);
+  std::vector<double> values = b->values;
+  EXPECT_EQ(behaviors::spec_in_force(b->planners[0], values).kappa[1], 0.4);
+  values[static_cast<std::size_t>(b->parameters[0].slot)] = 0.2;
+  EXPECT_EQ(behaviors::spec_in_force(b->planners[0], values).kappa[1], 0.2);
+}
+
+// --- torque steps
+
+std::string two_stances(const std::string& second) {
+  return "behavior: 1\nrobot: hume\nstacks:\n"
+         "  dual:\n    contacts: [right_foot, left_foot]\n    tasks:\n" +
+         dual_tasks() + "  single:\n    contacts: [right_foot]\n    tasks:\n" + single_tasks() +
+         "machine:\n  safe: limp\n  states:\n    both: {stack: dual, after: 1 s, to: one}\n" +
+         second + "    limp: {tasks: {rest: {type: joint_damping, gains: {kd: 1}}}}\n";
+}
+
+TEST(PhysicsSteps, AFootReleasedAtOnceIsWarnedAboutAtTheTransition) {
+  const std::string text = two_stances("    one: {stack: single}\n");
+  const std::string said = physics(text);
+  EXPECT_THAT(said, StartsWith(place_of(text, "1 s") + "warning: the torque of '"));
+  EXPECT_THAT(said, HasSubstr("when 'both' is left, from right_foot and left_foot to right_foot "
+                              "alone (the robot's bound is 5 Nm): ramp it with a "
+                              "contact_transition that releases in the state entered"));
+  // hume-facts E8: 24-28 Nm on Hume without transition.
+  const std::size_t by = said.find("steps by ");
+  ASSERT_NE(by, std::string::npos);
+  EXPECT_NEAR(std::stod(said.substr(by + 9)), 26.0, 2.5);
+}
+
+TEST(PhysicsSteps, ADeclaredTransitionIsClean) {
+  EXPECT_EQ(
+      physics(two_stances(
+          "    one: {stack: single, contact_transition: {releases: left_foot, over: 24 ms}}\n")),
+      "");
+}
+
+TEST(PhysicsSteps, LoadingCoversWhatComesAfterIt) {
+  const std::string release = "contact_transition: {releases: left_foot, over: 24 ms}";
+  const std::string loads = "    one: {stack: single, " + release +
+                            ", after: 1 s, to: load}\n"
+                            "    load: {stack: single, contact_transition: {loads: left_foot, "
+                            "over: 24 ms, toward: dual}, "
+                            "after: 24 ms, to: both}\n";
+  EXPECT_EQ(physics(two_stances(loads)), "");
+  const std::string at_once = "    one: {stack: single, " + release + ", after: 1 s, to: both}\n";
+  EXPECT_THAT(physics(two_stances(at_once)), HasSubstr("that loads in the state left"));
+}
+
+TEST(PhysicsCheck, ABehaviorWithoutARobotHasNoPhysics) {
+  EXPECT_EQ(physics("behavior: 1\nmachine: {states: {a: {doc: here}}}\n"), "");
+}
+
+}  // namespace
+}  // namespace footfall::tests

@@ -1,0 +1,173 @@
+// Lua scripts: what they see, what they may do, and what stops them.
+#include "behaviors/script/script.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/behaviors/behavior_test_support.h"
+
+namespace footfall::tests {
+namespace {
+
+using behaviors::Script;
+using behaviors::ScriptAnswer;
+using behaviors::ScriptError;
+using behaviors::ScriptSettings;
+using behaviors::ScriptView;
+
+// A behavior with two parameters and an event, its values, and a script beside it.
+struct Bench {
+  explicit Bench(const std::string& text, const ScriptSettings& settings = {}) : script(settings) {
+    behavior = load(R"(
+behavior: 1
+parameters: {speed: {value: 1 m/s, range: [0 m/s, 2 m/s], live: true}, goal: [0, 0]}
+events: {tapped: "", go: ""}
+machine: {states: {a: {transitions: [{on: go, to: b}]}, b: {}}}
+)");
+    active.assign(behavior->states.size(), 0);
+    active[1] = 1;
+    loaded = script.load(text, error);
+    view = {behavior.get(), behavior->signals.values(), behavior->values.data(), active.data(),
+            2.5};
+  }
+  bool call(const std::string& name) { return script.call(name, view, answer); }
+
+  Script script;
+  std::unique_ptr<behaviors::Behavior> behavior;
+  std::vector<std::uint8_t> active;
+  bool loaded = false;
+  ScriptError error;
+  ScriptView view;
+  ScriptAnswer answer;
+};
+
+TEST(Script, AFunctionSeesTheRobotAndAnswersWithEventsAndParameters) {
+  Bench bench(R"(
+function fast()
+  if footfall.active("a") and footfall.time() == 2.5 and footfall.parameter("speed") == 1 then
+    footfall.set("speed", 1.5)
+    footfall.set("goal", {3, 4})
+    footfall.set("goal.y", 5)
+    footfall.raise("go")
+    footfall.log("now " .. footfall.parameter("goal"))
+  end
+end)");
+  ASSERT_TRUE(bench.loaded) << bench.error.text;
+  EXPECT_EQ(bench.script.functions(), Lines{"fast"});
+  ASSERT_TRUE(bench.call("fast"));
+  ASSERT_EQ(bench.answer.edits.size(), 4U);
+  const int speed = bench.behavior->parameters[0].slot, goal = bench.behavior->parameters[1].slot;
+  EXPECT_EQ(bench.answer.edits[0].slot, speed);
+  EXPECT_EQ(bench.answer.edits[0].value, 1.5);
+  EXPECT_EQ(bench.answer.edits[2].slot, goal + 1);
+  EXPECT_EQ(bench.answer.edits[3].value, 5.0);
+  ASSERT_EQ(bench.answer.events.size(), 1U);
+  EXPECT_EQ(bench.answer.events[0], bench.behavior->find_event("go"));
+  EXPECT_EQ(bench.answer.messages, Lines{"now 0.0"});
+}
+
+TEST(Script, HandlersMatchEventsAsTransitionsDo) {
+  Bench bench(R"(
+footfall.on("fault.*", function(event) footfall.log(event) end)
+footfall.on("tapped", function() footfall.log("tapped") end))");
+  ASSERT_TRUE(bench.loaded) << bench.error.text;
+  EXPECT_EQ(bench.script.patterns(), (Lines{"fault.*", "tapped"}));
+  EXPECT_TRUE(bench.script.handle("fault.fall", bench.view, bench.answer));
+  EXPECT_TRUE(bench.script.handle("faulty", bench.view, bench.answer));
+  EXPECT_TRUE(bench.script.handle("tapped", bench.view, bench.answer));
+  EXPECT_EQ(bench.answer.messages, (Lines{"fault.fall", "tapped"}));
+}
+
+TEST(Script, AMistakeNamesItsLineAndDropsWhatTheCallAskedFor) {
+  Bench bench("function f()\n footfall.raise('go')\n footfall.raise('tappd')\nend");
+  EXPECT_FALSE(bench.call("f"));
+  EXPECT_TRUE(bench.answer.events.empty());
+  EXPECT_EQ(bench.answer.messages,
+            Lines{"script error: line 3: unknown event 'tappd' (did you mean 'tapped'?)"});
+  EXPECT_FALSE(bench.script.load("function g(\n", bench.error));
+  EXPECT_EQ(bench.error.line, 2);
+}
+
+TEST(Script, AValueOutsideItsRangeIsRefused) {
+  Bench bench(
+      "function f() footfall.set('speed', 3) end function g() footfall.set('speed', 0/0) end");
+  EXPECT_FALSE(bench.call("f"));
+  EXPECT_FALSE(bench.call("g"));
+  EXPECT_TRUE(bench.answer.edits.empty());
+}
+
+TEST(Script, AnEndlessLoopIsStoppedEvenIfItCatchesErrors) {
+  Bench bench(R"(
+function f() while true do pcall(function() while true do end end) end end
+function g() local co = coroutine.wrap(function() while true do end end) co() end)",
+              {{}, 0, 200'000});
+  EXPECT_FALSE(bench.call("f"));
+  EXPECT_FALSE(bench.call("g"));
+  EXPECT_NE(bench.answer.messages[0].find("ran longer"), std::string::npos);
+  EXPECT_TRUE(bench.script.load("function h() end", bench.error));
+  EXPECT_TRUE(bench.call("h")) << "the next call has a budget of its own";
+}
+
+TEST(Script, MemoryIsBounded) {
+  Bench bench("function f() local t = {} while true do t[#t + 1] = string.rep('x', 1000) end end",
+              {{}, 0, 1'000'000'000, 4'000'000});
+  EXPECT_FALSE(bench.call("f"));
+  EXPECT_NE(bench.answer.messages[0].find("more memory"), std::string::npos);
+}
+
+TEST(Script, FilesProcessesAndClocksAreOutOfReach) {
+  for (const char* text : {"io.open('x')", "os.execute('true')", "os.remove('x')", "os.time()",
+                           "dofile('x')", "load('return 1')", "require('x')", "debug.getinfo(1)"}) {
+    Bench bench(std::string("function f() ") + text + " end");
+    ASSERT_TRUE(bench.loaded) << text;
+    EXPECT_FALSE(bench.call("f")) << text;
+  }
+  Bench bench("function f() io.open('/nowhere/x') end");
+  EXPECT_FALSE(bench.call("f"));
+  EXPECT_NE(bench.answer.messages[0].find("footfall run --allow files"), std::string::npos);
+}
+
+TEST(Script, ARunMayAllowFilesWithoutProcesses) {
+  Bench bench("function f() return io.open('/nowhere/x') end function g() io.popen('true') end",
+              {{true, false}});
+  EXPECT_TRUE(bench.call("f"));
+  EXPECT_FALSE(bench.call("g"));
+}
+
+TEST(Script, IterationAndRandomNumbersRepeat) {
+  const char* text = R"(
+function f()
+  local t = {zeta = 1, alpha = 2, [3] = 3, mid = 4}
+  local s = ""
+  for key in pairs(t) do s = s .. key .. " " end
+  footfall.log(s .. math.random(1000000))
+end)";
+  Bench one(text, {{}, 7}), other(text, {{}, 7}), third(text, {{}, 8});
+  ASSERT_TRUE(one.call("f") && other.call("f") && third.call("f"));
+  EXPECT_TRUE(one.answer.messages[0].starts_with("3 alpha mid zeta "));
+  EXPECT_EQ(one.answer.messages, other.answer.messages);
+  EXPECT_NE(one.answer.messages, third.answer.messages);
+}
+
+bool halve(behaviors::NativeCall& call) noexcept {
+  call.parameters[0] *= 0.5;
+  return call.parameters[0] > 1.0;
+}
+
+TEST(Script, ARegisteredFunctionRunsAtOnceAndItsFailureSkipsTheRestOfTheList) {
+  behaviors::LoadOptions options = options_for_tests();
+  options.functions = {{"halve", halve}};
+  Runner run(load(chart(R"(
+  on_entry: [{call: halve}, {set: {y: $x}}, {call: halve}, {set: {y: 99}}]
+  transitions: [{on: error.execution, do: [{set: {failed: 1}}]}]
+parameters: {x: 4, y: 0, failed: 0}
+)"),
+                  options));
+  run.start();
+  run.tick();
+  EXPECT_EQ(run.parameter("y"), 2.0);
+  EXPECT_EQ(run.parameter("x"), 1.0);
+  EXPECT_EQ(run.parameter("failed"), 1.0);
+}
+
+}  // namespace
+}  // namespace footfall::tests
