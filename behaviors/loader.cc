@@ -6,8 +6,13 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "behaviors/check/structure/structure.h"
+#include "behaviors/compile.h"
 #include "behaviors/language/language.h"
+#include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
+#include "behaviors/load/control/steps.h"
+#include "behaviors/load/steps.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "apps/shared/commands.h"
 #include "behaviors/statechart/trace.h"
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 
 namespace footfall::apps {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "core/text/printable.h"
 #include "core/units/units.h"
-#include "core/yaml/text_check.h"
 #include "lab/log/reader.h"
 
 namespace footfall::apps {

@@ -12,7 +12,7 @@
 
 #include "apps/shared/commands.h"
 #include "core/realtime/allocation_count.h"
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 #include "hal/backends/stub.h"
 #include "lab/run/run_log.h"
 

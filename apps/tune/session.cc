@@ -9,7 +9,7 @@
 #include "apps/shared/commands.h"
 #include "apps/tune/view/text.h"
 #include "core/index.h"
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 
 namespace footfall::apps {
 namespace {

@@ -77,6 +77,14 @@ void Chart::match_events() {
   }
 }
 
+bool active_together(const Chart& chart, int a, int b) {
+  if (a == b || chart.is_descendant(a, b) || chart.is_descendant(b, a)) return false;
+  int common = a;
+  while (!chart.is_descendant(b, common))
+    common = chart.states[static_cast<std::size_t>(common)].parent;
+  return chart.states[static_cast<std::size_t>(common)].kind == StateKind::parallel;
+}
+
 std::int64_t periods_of(double seconds, std::int64_t rate_mhz) noexcept {
   if (!(seconds >= 0.0) || seconds > 1e6) return -1;
   const std::int64_t ns = std::llround(seconds * 1e9);  // at most 10^15

@@ -162,6 +162,9 @@ struct Chart {
   static bool event_matches(std::string_view pattern, std::string_view event);
 };
 
+// Neither state contains the other, and both can be active at once.
+bool active_together(const Chart& chart, int a, int b);
+
 // Number of whole periods that `seconds` lasts: ceil(D * rate) with D rounded to nanoseconds, in
 // whole numbers, so that 16 ms at 1500 Hz is 24 always. -1 if D is negative, not finite or above
 // 10^6 s.

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "behaviors/compile.h"
 #include "behaviors/load/context.h"
+#include "behaviors/load/steps.h"
 #include "behaviors/load/substitution.h"
 
 namespace footfall::behaviors {

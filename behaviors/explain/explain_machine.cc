@@ -5,8 +5,10 @@
 
 #include <algorithm>
 
+#include "behaviors/compile.h"
 #include "behaviors/language/language.h"
 #include "behaviors/load/context.h"
+#include "behaviors/load/steps.h"
 #include "behaviors/load/substitution.h"
 
 namespace footfall::behaviors {

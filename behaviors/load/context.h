@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "behaviors/compiled/behavior.h"
-#include "behaviors/loader.h"
+#include "behaviors/load/options.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/yaml/value_reader.h"
 #include "core/yaml/yaml.h"
@@ -133,46 +133,5 @@ struct LoadContext {
   // Index of a contact of the robot, -1 and an error otherwise.
   int require_contact(const core::YamlNode& node);
 };
-
-// Arguments put into a tree: whole scalars, keys, parts of dotted names and of expressions.
-core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments);
-
-// A behavior's file, or its text, with its bases (tree.cc).
-core::YamlNode load_tree(const std::string& path, const LoadOptions& options,
-                         core::Diagnostics& diagnostics);
-core::YamlNode load_tree_text(std::string_view text, const std::string& name,
-                              const LoadOptions& options, core::Diagnostics& diagnostics);
-
-// All steps from a file's tree to `context.behavior`; false after errors.
-bool compile_behavior(LoadContext& context, core::YamlNode root, const std::string& path);
-
-// The loader's steps, in their order.
-void apply_overrides(LoadContext& context);      // overrides.cc
-void load_parameters(LoadContext& context);      // parameters.cc
-void expand_machine(LoadContext& context);       // template.cc
-void check_machine_names(LoadContext& context);  // template.cc
-void load_states(LoadContext& context);          // behaviors/load/chart/states.cc
-void load_events(LoadContext& context);          // behaviors/load/chart/events.cc
-void load_scripts(LoadContext& context);         // behaviors/load/chart/scripts.cc
-void load_planners(LoadContext& context);        // behaviors/load/chart/planners.cc
-void load_signals(LoadContext& context);         // behaviors/load/control/signals.cc
-void load_gains(LoadContext& context);           // behaviors/load/control/gains.cc
-void load_torque_loops(LoadContext& context);    // behaviors/load/control/torque_loop.cc
-void load_transitions(LoadContext& context);     // behaviors/load/chart/transitions.cc
-void load_invokes(LoadContext& context);         // behaviors/load/chart/invokes.cc
-void load_control(LoadContext& context);         // behaviors/load/control/control.cc
-void finish_events(LoadContext& context);        // behaviors/load/chart/events.cc
-void warn_absences(LoadContext& context);        // unused.cc
-void check_structure(LoadContext& context);      // behaviors/check/structure/structure.cc
-
-// Events of a transition's `on`, into Chart::patterns (behaviors/load/chart/events.cc).
-void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition);
-// Actions of a list (on_entry, on_exit, do) appended to the chart
-// (behaviors/load/chart/actions.cc).
-Range load_actions(LoadContext& context, const core::YamlNode& node, int state);
-// Targets of a transition, `initial` or `default` (behaviors/load/chart/states.cc).
-Range load_targets(LoadContext& context, int from, const core::YamlNode& node);
-// Errors for every `$name` left in a name or key that is no parameter (template.cc).
-void check_resolved(LoadContext& context, const core::YamlNode& node);
 
 }  // namespace footfall::behaviors

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "behaviors/load/context.h"
+#include "behaviors/load/steps.h"
 #include "core/text/dotted_name.h"
 
 namespace footfall::behaviors {

@@ -5,6 +5,7 @@
 
 #include "behaviors/language/language.h"
 #include "behaviors/load/context.h"
+#include "behaviors/load/steps.h"
 
 namespace footfall::behaviors {
 namespace {

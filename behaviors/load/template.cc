@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "behaviors/load/context.h"
+#include "behaviors/load/steps.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "behaviors/compile.h"
 #include "behaviors/save/parts.h"
 #include "core/yaml_text/edit.h"
 

@@ -10,7 +10,9 @@
 #include <optional>
 #include <tuple>
 
+#include "behaviors/compile.h"
 #include "behaviors/load/control/gains.h"
+#include "behaviors/load/steps.h"
 #include "behaviors/save/parts.h"
 #include "core/yaml_text/write.h"
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 
 namespace footfall::core {
 

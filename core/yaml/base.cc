@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/yaml/yaml.h"
-#include "core/yaml_text/edit.h"
 
 namespace footfall::core {
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.h"
+#include "core/text/file_change.h"
 
 namespace footfall::core {
 
@@ -65,6 +66,11 @@ using YamlHistory = std::vector<YamlChange>;  // the innermost base's changes fi
 YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
                              YamlHistory* history = nullptr,
                              const std::vector<std::string>& library = {});
+// load_yaml_with_base() as if the changes had been written.
+YamlNode load_changed_yaml_with_base(const std::string& path,
+                                     const std::vector<FileChange>& changes,
+                                     Diagnostics& diagnostics,
+                                     const std::vector<std::string>& library);
 // The same for text; `base:` is relative to the folder of `name`.
 YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
                                   Diagnostics& diagnostics, YamlHistory* history = nullptr,

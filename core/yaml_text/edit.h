@@ -33,10 +33,4 @@ std::optional<TextEdit> add_value(std::string_view text, const YamlNode& root,
 // The text with all edits made; equal ones count once. Nothing if two of them meet otherwise.
 std::optional<std::string> apply_edits(std::string_view text, std::vector<TextEdit> edits);
 
-// load_yaml_with_base() as if the changes had been written.
-YamlNode load_changed_yaml_with_base(const std::string& path,
-                                     const std::vector<FileChange>& changes,
-                                     Diagnostics& diagnostics,
-                                     const std::vector<std::string>& library);
-
 }  // namespace footfall::core

@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 #include "engine/lcm/bus.h"
 #include "engine/live/codec.h"
 

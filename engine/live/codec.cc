@@ -13,7 +13,7 @@
 #include <footfall_lcm/values_t.hpp>
 #include <string_view>
 
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 
 namespace footfall::engine {
 namespace {

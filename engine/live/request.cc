@@ -9,8 +9,8 @@
 
 #include "core/diagnostics/diagnostics.h"
 #include "core/index.h"
+#include "core/text/printable.h"
 #include "core/units/units.h"
-#include "core/yaml/text_check.h"
 
 namespace footfall::engine {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/index.h"
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 #include "engine/live/catalogue.h"
 #include "engine/live/clients.h"
 #include "engine/live/history.h"

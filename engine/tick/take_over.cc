@@ -1,20 +1,11 @@
 // A control loop in another's place, between two ticks; see ControlLoop::take_over.
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
 #include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
 #include "engine/tick/control_loop.h"
 
 namespace footfall::engine {
-namespace {
-
-bool same_bits(double a, double b) noexcept {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-}  // namespace
 
 bool ControlLoop::may_take_over(const ControlLoop& old,
                                 const behaviors::TakeOverMap& map) const noexcept {
@@ -78,63 +69,6 @@ void ControlLoop::take_signals(const ControlLoop& old, const behaviors::TakeOver
 void ControlLoop::set_probation(bool on) noexcept {
   probation_ = on;
   failed_by_ = core::Fault::count;
-}
-
-void EditDoor::take_over(EditDoor& old, const TakeOver& change) noexcept {
-  moving_.clear();
-  for (const behaviors::ParameterInfo& info : change.to.parameters) {
-    for (int slot = info.slot; slot < info.slot + info.size; ++slot) {
-      const Ramp& ramp = ramps_[at(slot)];
-      const double own = ramp.ticks > 0 ? ramp.to : change.own[at(slot)];
-      ramps_[at(slot)] = {};
-      if (change.map.slots[at(slot)] >= 0) take_slot(old, info, slot, own, change);
-    }
-  }
-  const std::uint64_t revision = old.revision() + 1;
-  for (EditEntrance& entrance : old.entrances_) old.refuse_waiting(entrance, change.tick, revision);
-  old.taken_.clear();
-  taken_.clear();
-  revision_.store(revision, std::memory_order_release);
-}
-
-// What the behavior sets itself stays as it is.
-void EditDoor::take_slot(const EditDoor& old, const behaviors::ParameterInfo& info, int slot,
-                         double own, const TakeOver& change) noexcept {
-  const std::size_t was = at(change.map.slots[at(slot)]);
-  const Ramp& running = old.ramps_[was];
-  const double now = change.before[was];
-  const double goal = running.ticks > 0 ? running.to : now;
-  const bool outside = info.has_range() && (goal < info.min || goal > info.max);
-  const bool same_file = same_bits(change.from.values[was], change.to.values[at(slot)]);
-  if ((info.variable || same_file) && !outside) {
-    if (running.ticks == 0) return;
-    ramps_[at(slot)] = running;
-  } else {
-    if (same_bits(own, now)) return;
-    ramps_[at(slot)] = {now, own, change.tick, change.periods, true};
-  }
-  moving_.push_back(slot);
-}
-
-void EditDoor::rest() noexcept {
-  for (const int slot : moving_) ramps_[at(slot)] = {};
-  moving_.clear();
-}
-
-void EditDoor::refuse_waiting(EditEntrance& entrance, std::int64_t tick,
-                              std::uint64_t revision) noexcept {
-  entrance.orders_.release(entrance.taken_);
-  entrance.taken_ = 0;
-  const std::size_t waiting = entrance.orders_.waiting();
-  for (std::size_t i = 0; i < waiting; ++i) {
-    const EditOrder& order = entrance.orders_.at(i);
-    if (order.outcome == EditOutcome::refused) continue;  // has no answer
-    EditEntrance::Answer* answer = entrance.answers_.next();
-    if (answer == nullptr) break;  // nobody takes them
-    answer->answer = {order.id, EditOutcome::stale_revision, tick, revision, 0};
-    entrance.answers_.publish();
-  }
-  entrance.orders_.release(waiting);
 }
 
 }  // namespace footfall::engine

@@ -10,8 +10,8 @@
 
 #include "core/diagnostics/diagnostics.h"
 #include "core/index.h"
+#include "core/text/printable.h"
 #include "core/yaml/glob.h"
-#include "core/yaml/text_check.h"
 
 namespace footfall::apps {
 namespace {

@@ -67,13 +67,6 @@ std::optional<std::int64_t> planned_ticks(const LoadContext& context, int expres
   return ticks < 0 ? std::nullopt : std::optional(ticks);
 }
 
-bool active_together(const Chart& chart, int a, int b) {
-  if (a == b || chart.is_descendant(a, b) || chart.is_descendant(b, a)) return false;
-  int common = a;
-  while (!chart.is_descendant(b, common)) common = chart.states[at(common)].parent;
-  return chart.states[at(common)].kind == StateKind::parallel;
-}
-
 std::string place_of(const LoadContext& context, core::Mark mark) {
   return fmt::format("{}:{}:{}", context.diagnostics.file(mark.file), mark.line, mark.column);
 }

@@ -63,8 +63,6 @@ bool same_expression(const Chart& chart, int a, int b);
 std::optional<double> planned_value(const LoadContext& context, int expression);
 // A time as planned_value, in ticks.
 std::optional<std::int64_t> planned_ticks(const LoadContext& context, int expression);
-// Neither state contains the other, and both can be active at once.
-bool active_together(const Chart& chart, int a, int b);
 // `file:line:column` of a mark, for a message that points to a second place.
 std::string place_of(const LoadContext& context, core::Mark mark);
 
@@ -103,5 +101,8 @@ void check_timing(LoadContext& context);  // too-short, cut-off, never-asked
 void check_events(LoadContext& context);  // never-raised, unheard
 void check_unused(LoadContext& context);  // unused
 void check_mirror(LoadContext& context);  // not-mirrored
+
+// All of them, reported into the context.
+void check_structure(LoadContext& context);
 
 }  // namespace footfall::behaviors

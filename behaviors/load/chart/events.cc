@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
 
 namespace footfall::behaviors {

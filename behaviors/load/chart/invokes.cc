@@ -1,8 +1,8 @@
 // `invoke:` of a state: which planner is asked when, and what a late answer is replaced by.
 #include <fmt/format.h>
 
-#include "behaviors/check/structure/structure.h"
 #include "behaviors/language/language.h"
+#include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
 
 namespace footfall::behaviors {

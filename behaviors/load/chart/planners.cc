@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "behaviors/language/language.h"
+#include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
 
 namespace footfall::behaviors {

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "behaviors/language/language.h"
+#include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
 #include "behaviors/script/script.h"
 

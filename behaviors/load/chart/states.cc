@@ -5,6 +5,7 @@
 #include <set>
 
 #include "behaviors/language/language.h"
+#include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
 
 namespace footfall::behaviors {

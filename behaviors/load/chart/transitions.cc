@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "behaviors/language/language.h"
+#include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
 
 namespace footfall::behaviors {

@@ -8,6 +8,7 @@
 
 #include "behaviors/language/language.h"
 #include "behaviors/load/control/gains.h"
+#include "behaviors/load/control/steps.h"
 #include "behaviors/load/control/tasks.h"
 
 namespace footfall::behaviors {

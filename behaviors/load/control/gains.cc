@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "behaviors/language/language.h"
+#include "behaviors/load/control/steps.h"
 #include "core/yaml/glob.h"
 
 namespace footfall::behaviors {

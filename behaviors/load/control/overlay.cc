@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "behaviors/language/language.h"
+#include "behaviors/load/steps.h"
 
 namespace footfall::behaviors {
 namespace {

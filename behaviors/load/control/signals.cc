@@ -5,6 +5,7 @@
 #include <array>
 #include <numeric>
 
+#include "behaviors/load/control/steps.h"
 #include "behaviors/load/control/task_types.h"
 #include "core/yaml/glob.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/yaml/text_check.h"
+#include "core/text/printable.h"
 
 namespace footfall::core {
 namespace {

@@ -1,0 +1,14 @@
+// Steps of the loader that make the control: signals, gains, torque loops, one ControlSpec for each
+// configuration. Load time only.
+#pragma once
+
+#include "behaviors/load/context.h"
+
+namespace footfall::behaviors {
+
+void load_signals(LoadContext& context);       // signals.cc
+void load_gains(LoadContext& context);         // gains.cc
+void load_torque_loops(LoadContext& context);  // torque_loop.cc
+void load_control(LoadContext& context);       // control.cc
+
+}  // namespace footfall::behaviors

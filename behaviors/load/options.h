@@ -1,0 +1,25 @@
+// What a program tells the loader beside the file.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "behaviors/compiled/behavior.h"
+
+namespace footfall::behaviors {
+
+// A C++ function that behaviors may `call:`.
+struct NativeFunctionInfo {
+  std::string name;
+  NativeFunction function = nullptr;
+};
+
+struct LoadOptions {
+  std::vector<std::string> search;  // folders of robots/NAME/robot.yaml, behaviors/library
+  std::string robot;                // overrides the file's `robot:` if not empty
+  std::vector<NativeFunctionInfo> functions;             // registered by the program
+  std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, texts as in YAML
+};
+
+}  // namespace footfall::behaviors
