@@ -19,7 +19,4 @@ std::unique_ptr<Behavior> load_behavior_text(std::string_view text, const std::s
                                              const LoadOptions& options,
                                              core::Diagnostics& diagnostics);
 
-// Where `base: NAME` finds behaviors by name: behaviors/library in each folder of `search`.
-std::vector<std::string> library_folders(const std::vector<std::string>& search);
-
 }  // namespace footfall::behaviors

@@ -11,6 +11,7 @@
 #include "apps/shared/output_file.h"
 #include "apps/suites/sweep_setup.h"
 #include "behaviors/check/physics/check.h"
+#include "behaviors/loader.h"
 #include "lab/scenario/loader.h"
 #include "lab/suite/files.h"
 #include "model/control_model.h"

@@ -8,6 +8,7 @@
 #include "apps/shared/commands.h"
 #include "behaviors/explain/explain_machine.h"
 #include "behaviors/language/language.h"
+#include "behaviors/loader.h"
 #include "core/yaml/explain.h"
 #include "core/yaml_text/write.h"
 #include "lab/scenario/keys.h"

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "behaviors/check/physics/check.h"
+#include "behaviors/loader.h"
 
 namespace footfall::apps {
 namespace fs = std::filesystem;

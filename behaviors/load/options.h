@@ -22,4 +22,7 @@ struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, texts as in YAML
 };
 
+// Where `base: NAME` finds behaviors by name: behaviors/library in each folder of `search`.
+std::vector<std::string> library_folders(const std::vector<std::string>& search);
+
 }  // namespace footfall::behaviors

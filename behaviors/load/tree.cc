@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "behaviors/load/context.h"
+#include "behaviors/load/options.h"
 #include "behaviors/load/steps.h"
 
 namespace footfall::behaviors {

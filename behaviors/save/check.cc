@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "behaviors/compile.h"
+#include "behaviors/loader.h"
 #include "behaviors/save/parts.h"
 #include "core/yaml_text/edit.h"
 

@@ -13,6 +13,7 @@
 #include "behaviors/compile.h"
 #include "behaviors/load/control/gains.h"
 #include "behaviors/load/steps.h"
+#include "behaviors/loader.h"
 #include "behaviors/save/parts.h"
 #include "core/yaml_text/write.h"
 

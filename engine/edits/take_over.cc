@@ -1,6 +1,7 @@
 // The door's part of a bumpless transfer: edits of the former behavior go on; see door.h.
 #include <bit>
 
+#include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
 #include "engine/edits/door.h"
 

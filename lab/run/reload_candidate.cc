@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "behaviors/check/physics/check.h"
+#include "behaviors/loader.h"
 #include "lab/run/log_setup.h"
 
 namespace footfall::lab {

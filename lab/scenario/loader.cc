@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "behaviors/load/chart/scripts.h"
+#include "behaviors/loader.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"
 #include "model/mjcf.h"

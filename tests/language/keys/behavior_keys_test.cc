@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "behaviors/language/language.h"
+#include "behaviors/loader.h"
 #include "tests/language/keys/key_uses.h"
 #include "tests/unit/behaviors/behavior_test_support.h"
 

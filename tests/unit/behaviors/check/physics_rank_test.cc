@@ -10,6 +10,7 @@
 #include "behaviors/check/physics/configurations.h"
 #include "behaviors/check/physics/law.h"
 #include "behaviors/check/physics/postures.h"
+#include "behaviors/loader.h"
 #include "tests/unit/behaviors/check/physics_test_support.h"
 
 namespace footfall::tests {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "behaviors/check/physics/check.h"
+#include "behaviors/loader.h"
 #include "tests/unit/behaviors/behavior_test_support.h"
 
 namespace footfall::tests {
