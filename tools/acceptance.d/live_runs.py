@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rows import BUILD, FOOTFALL, ROOT, give_up, last_json
 
-PROGRAMS = Path(os.environ.get("FOOTFALL_LIVE", BUILD / "tests" / "live"))
+PROGRAMS = Path(os.environ.get("FOOTFALL_LIVE", BUILD / "tests" / "runs" / "live"))
 GROUP = "239.255.76.67"
 
 

@@ -65,7 +65,7 @@ WrongFile read(const fs::path& path) {
 
 std::vector<WrongFile> wrong_files(const char* folder) {
   std::vector<fs::path> paths;
-  const fs::path root = fs::path(FOOTFALL_SOURCE_DIR) / "tests" / "mistakes" / folder;
+  const fs::path root = fs::path(FOOTFALL_SOURCE_DIR) / "tests" / "language" / "mistakes" / folder;
   for (const auto& entry : fs::directory_iterator(root)) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   std::vector<WrongFile> files;

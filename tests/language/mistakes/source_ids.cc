@@ -57,7 +57,7 @@ void read_source(const fs::path& path, std::map<std::string, std::string>& ids) 
 std::map<std::string, std::string> ids_in_sources(const std::string& root) {
   std::map<std::string, std::string> ids;
   for (const char* folder : {"core", "model", "behaviors", "tasks", "sim", "lab"}) {
-    for (const auto& entry : fs::directory_iterator(fs::path(root) / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(root) / folder)) {
       if (entry.path().extension() == ".cc") read_source(entry.path(), ids);
     }
   }

@@ -14,7 +14,7 @@ import time
 import unittest
 
 BINARY, SOURCE = map(os.path.abspath, sys.argv[1:3])
-sys.path.insert(0, os.path.join(SOURCE, "tests", "docs"))
+sys.path.insert(0, os.path.join(SOURCE, "tests", "runs", "docs"))
 import run_docs  # noqa: E402
 
 GROUP = "239.255.76.67"

@@ -15,7 +15,7 @@ RANDOM = 100_000
 
 def agreement():
     """(random expressions, how many of them muParser was asked) if all agree to the last bit, else None."""
-    program = BUILD / "tests" / "behaviors" / "expression_oracle_test"
+    program = BUILD / "tests" / "unit" / "behaviors" / "expression_oracle_test"
     if not program.exists():
         give_up(f"{program} is not built")
     done = subprocess.run([str(program)], env=dict(os.environ, FOOTFALL_EXPRESSIONS=str(RANDOM)),

@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from rows import FOOTFALL, ROOT, WANT, finish, give_up, progress, progress_done
 
-sys.path.insert(0, str(ROOT / "tests" / "fuzz"))
+sys.path.insert(0, str(ROOT / "tests" / "language" / "fuzz"))
 
 import hostile_files
 import make_corpus
@@ -35,7 +35,7 @@ def fuzz(target, seconds):
     folder = FOLDER / target
     finds = FOLDER / f"{target}-finds"
     finds.mkdir(parents=True, exist_ok=True)
-    command = [str(ROOT / "build" / "fuzz" / "tests" / "fuzz" / f"fuzz_{target}"), str(folder),
+    command = [str(ROOT / "build" / "fuzz" / "tests" / "language" / "fuzz" / f"fuzz_{target}"), str(folder),
                f"-dict={FOLDER / 'words.dict'}", f"-max_total_time={int(seconds)}", f"-max_len={LONGEST[target]}",
                "-timeout=1", "-rss_limit_mb=1024", "-malloc_limit_mb=200", "-print_final_stats=1",
                f"-artifact_prefix={finds}/"]

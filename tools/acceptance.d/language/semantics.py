@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from rows import BUILD, ROOT, finish, give_up
 
 CHARTS, SEED = 10000, 2000000
-FOLDER = ROOT / "tests" / "conformance"
+FOLDER = ROOT / "tests" / "language" / "conformance"
 
 
 def output(command):
@@ -23,12 +23,12 @@ def output(command):
 
 
 files = sorted(FOLDER.glob("*.yaml"))
-code, text = output([BUILD / "tests" / "conformance" / "conformance_test", *files])
+code, text = output([BUILD / "tests" / "language" / "conformance" / "conformance_test", *files])
 ran, passed = (re.search(pattern, text) for pattern in (r"(\d+) tests? from \d+ test suites? ran", r"PASSED  \] (\d+)"))
 if not ran:
     give_up("the conformance suite did not run")
 cases, good = int(ran.group(1)), int(passed.group(1)) if passed else 0
-agree, lines = output([sys.executable, FOLDER / "reference.py", BUILD / "tests" / "conformance" / "trace_many", CHARTS, SEED])
+agree, lines = output([sys.executable, FOLDER / "reference.py", BUILD / "tests" / "language" / "conformance" / "trace_many", CHARTS, SEED])
 if not lines.strip():
     give_up("the reference interpreter did not run")
 finish(f"{good} of {cases} cases pass, in {len(files)} files; {lines.strip().splitlines()[-1]} from Appendix D",

@@ -13,7 +13,7 @@ PROGRAMS = {"behaviors_test": "StatechartClock.*", "behaviors_day_test": "Statec
 
 
 def passed(program, tests):
-    command = [str(BUILD / "tests" / "behaviors" / program), f"--gtest_filter={tests}"]
+    command = [str(BUILD / "tests" / "unit" / "behaviors" / program), f"--gtest_filter={tests}"]
     try:
         done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
     except (OSError, subprocess.TimeoutExpired) as problem:

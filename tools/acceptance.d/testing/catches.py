@@ -22,7 +22,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 import rows  # noqa: E402
 
-SET = rows.ROOT / "tests" / "regression"
+SET = rows.ROOT / "tests" / "runs" / "regression"
 TREE = rows.ROOT / "build" / "planted" / "tree"
 BUILD = TREE / "build" / "planted"
 MUST = 18

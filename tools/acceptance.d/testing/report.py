@@ -13,7 +13,7 @@ from rows import BEST, BUILD, FOOTFALL, ROOT, SEED, finish, give_up, run, scratc
 
 MAX_MB, MAX_S = 5.0, 2.0
 
-browser = BUILD / "tests" / "browser" / "npm"
+browser = BUILD / "tests" / "runs" / "browser" / "npm"
 chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 if not chromium or not (browser / "page.mjs").exists():
     give_up("no chromium, or the tests were built without npm")
