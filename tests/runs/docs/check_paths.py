@@ -2,8 +2,8 @@
 """Every place that a document or a comment names exists: files, headings, numbered paragraphs.
 
 Documents: links and their #headings; paths in backticks that begin with a folder of the repository, with or without a
-source file's suffix, with *, NAME or {h,cc}. Sources: the same paths in comments. Both: `docs/behaviors.md 8.3` is a paragraph
-that begins with this number.
+source file's suffix, with *, NAME or {h,cc}. Sources: the same paths in comments, and files beside them (`see door.h`).
+Both: `docs/behaviors.md 8.3` is a paragraph that begins with this number.
 """
 import pathlib
 import re
@@ -16,6 +16,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
 HEADING = re.compile(r"^#+ (.+)$", re.M)
 PARAGRAPH = re.compile(r"docs/(\w+)\.md,? (?:paragraphs? )?(\d+\.\d+)")
+SIBLING = re.compile(r"(?<![\w./*])(\w+\.(?:h|cc))\b")
 COMMENT = re.compile(r"(?<!:)//[^\n]*|(?:^|(?<=\s))#[ !][^\n]*", re.M)
 SUFFIXES = ("", ".h", ".cc", ".py", ".yaml", ".md")
 ELSEWHERE = ("tests/language/mistakes", "tests/runs/docs/check_layers_test.py")  # their paths are not of this tree
@@ -79,7 +80,8 @@ def check_source(source):
     """Yields (line, message) of the comments in a source."""
     for number, line in enumerate(source.read_text(encoding="utf-8").splitlines(), 1):
         for comment in COMMENT.findall(line):
-            for path in PATH.findall(comment):
+            siblings = SIBLING.findall(comment) if source.suffix in (".h", ".cc") else []
+            for path in PATH.findall(comment) + [str(source.relative_to(ROOT).with_name(name)) for name in siblings]:
                 if not exists(path):
                     yield number, f"'{path}' does not exist"
             for name, paragraph in PARAGRAPH.findall(comment):
