@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "lab/report/data.h"
-#include "sim/view/movie.h"
+#include "sim/view/video.h"
 
 namespace footfall::apps {
 namespace {

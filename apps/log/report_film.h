@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lab/log/reader.h"
-#include "sim/view/film.h"
+#include "sim/view/renderer.h"
 
 namespace footfall::apps {
 

@@ -18,9 +18,9 @@
 #include "lab/process/pool.h"
 #include "lab/run/version.h"
 #include "lab/suite/files.h"
-#include "lab/sweep/plan/files.h"
+#include "lab/sweep/plan/derived_files.h"
 #include "lab/sweep/results/report.h"
-#include "lab/sweep/results/session.h"
+#include "lab/sweep/results/runner.h"
 
 namespace footfall::apps {
 namespace {

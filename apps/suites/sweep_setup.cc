@@ -10,7 +10,7 @@
 #include "apps/shared/output_file.h"
 #include "lab/scenario/loader.h"
 #include "lab/sweep/plan/check.h"
-#include "lab/sweep/plan/files.h"
+#include "lab/sweep/plan/derived_files.h"
 #include "sim/world/description.h"
 
 namespace footfall::apps {

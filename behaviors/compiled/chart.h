@@ -109,7 +109,7 @@ struct LogText {
 
 inline constexpr int kMaxLogValues = 8;
 
-// An event or prefix that a transition listens to, as rule 7 writes it.
+// An event or prefix that a transition listens to, in the form of docs/behaviors.md 8.7.
 struct EventPattern {
   int transition = 0;
   std::string text;

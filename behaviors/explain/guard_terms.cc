@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace footfall::behaviors {
 namespace {
@@ -17,72 +19,40 @@ struct OpInfo {
   bool infix = false;
 };
 
+// Operations that are written with operands; the others are read by name.
+constexpr auto kOps = std::to_array<std::pair<Op, OpInfo>>({
+    {Op::negate, {1, "-"}},
+    {Op::logical_not, {1, "not "}},
+    {Op::add, {2, "+", true}},
+    {Op::subtract, {2, "-", true}},
+    {Op::multiply, {2, "*", true}},
+    {Op::divide, {2, "/", true}},
+    {Op::power, {2, "^", true}},
+    {Op::less, {2, "<", true}},
+    {Op::less_equal, {2, "<=", true}},
+    {Op::greater, {2, ">", true}},
+    {Op::greater_equal, {2, ">=", true}},
+    {Op::equal, {2, "==", true}},
+    {Op::not_equal, {2, "!=", true}},
+    {Op::logical_and, {2, "and", true}},
+    {Op::logical_or, {2, "or", true}},
+    {Op::select, {3, "select"}},
+    {Op::absolute, {1, "abs"}},
+    {Op::minimum, {2, "min"}},
+    {Op::maximum, {2, "max"}},
+    {Op::clamp, {3, "clamp"}},
+    {Op::square_root, {1, "sqrt"}},
+    {Op::sine, {1, "sin"}},
+    {Op::cosine, {1, "cos"}},
+    {Op::arctangent2, {2, "atan2"}},
+    {Op::hypotenuse, {2, "hypot"}},
+    {Op::exponential, {1, "exp"}},
+    {Op::logarithm, {1, "log"}},
+});
+
 OpInfo op_info(Op op) {
-  switch (op) {
-    case Op::constant:
-    case Op::parameter:
-    case Op::signal:
-    case Op::state_time:
-    case Op::time:
-    case Op::in_state:
-    case Op::entry:
-      return {};
-    case Op::negate:
-      return {1, "-"};
-    case Op::logical_not:
-      return {1, "not "};
-    case Op::add:
-      return {2, "+", true};
-    case Op::subtract:
-      return {2, "-", true};
-    case Op::multiply:
-      return {2, "*", true};
-    case Op::divide:
-      return {2, "/", true};
-    case Op::power:
-      return {2, "^", true};
-    case Op::less:
-      return {2, "<", true};
-    case Op::less_equal:
-      return {2, "<=", true};
-    case Op::greater:
-      return {2, ">", true};
-    case Op::greater_equal:
-      return {2, ">=", true};
-    case Op::equal:
-      return {2, "==", true};
-    case Op::not_equal:
-      return {2, "!=", true};
-    case Op::logical_and:
-      return {2, "and", true};
-    case Op::logical_or:
-      return {2, "or", true};
-    case Op::select:
-      return {3, "select"};
-    case Op::absolute:
-      return {1, "abs"};
-    case Op::minimum:
-      return {2, "min"};
-    case Op::maximum:
-      return {2, "max"};
-    case Op::clamp:
-      return {3, "clamp"};
-    case Op::square_root:
-      return {1, "sqrt"};
-    case Op::sine:
-      return {1, "sin"};
-    case Op::cosine:
-      return {1, "cos"};
-    case Op::arctangent2:
-      return {2, "atan2"};
-    case Op::hypotenuse:
-      return {2, "hypot"};
-    case Op::exponential:
-      return {1, "exp"};
-    case Op::logarithm:
-      return {1, "log"};
-  }
-  return {};
+  const auto found = std::ranges::find(kOps, op, &std::pair<Op, OpInfo>::first);
+  return found == kOps.end() ? OpInfo{} : found->second;
 }
 
 bool compares(Op op) { return op >= Op::less && op <= Op::not_equal; }

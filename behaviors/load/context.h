@@ -122,7 +122,7 @@ struct LoadContext {
   // A time that must not be negative where it is constant.
   int compile_time(const core::YamlNode& node, const ValueScope& scope);
 
-  // A state by any suffix of its path, as rule 8 says; -1 and a reason otherwise.
+  // A state by any suffix of its path, see docs/behaviors.md 8.8; -1 and a reason otherwise.
   int find_target(int from, std::string_view name, std::string& why) const;
   // The same with an error at the node.
   int require_target(int from, const core::YamlNode& node);

@@ -100,7 +100,7 @@ void Machine::take_over(const Machine& old, const TakeOverMap& map) noexcept {
   m.started = true;
 }
 
-// Rule 3's order: faults, contacts, planners, parameters, outside ones.
+// The order of docs/behaviors.md 8.3: faults, contacts, planners, parameters, outside ones.
 void Machine::Impl::raise_events() noexcept {
   for (const int event : fault_events) statechart.raise(event);
   fault_events.clear();

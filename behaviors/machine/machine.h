@@ -66,7 +66,7 @@ class Machine {
 
   // Enters the initial configuration at tick 0; signals hold the first measurement.
   void start(const Measure& measure) noexcept;
-  // One macro step per behavior-language section 5 rule 3, then references of the active control.
+  // One macro step (docs/behaviors.md 8.3), then the references of the active control.
   // `tick` counts control periods since start (skipped ones included).
   void tick(std::int64_t tick, const Measure& measure) noexcept;
 
@@ -87,7 +87,7 @@ class Machine {
   void copy_outside_events(std::vector<int>& events) const noexcept;
   // Fault events `fault.NAME`; with reaction safe_state the `safe` state is entered at this tick.
   void raise_fault(core::Fault fault, core::Reaction reaction) noexcept;
-  void enter_safe() noexcept;  // rule 10
+  void enter_safe() noexcept;  // docs/behaviors.md 8.10
 
   // Requests of this tick (valid until the next tick) and the answers to earlier ones.
   std::span<const PlanRequest> plan_requests() const noexcept;

@@ -54,7 +54,7 @@ struct FootPlan {
 FootPlan plan_foot(const FootPlannerSpec& spec, const FootPlannerInput& input) noexcept;
 
 // Eigenvalues' product form of the step-to-step map A' of one axis: {larger, smaller} by magnitude;
-// real for every kappa here. Source: hume-facts E1: tr A' and det A'.
+// real for every kappa here. Source: tr A' and det A' with E1 of docs/notation.md.
 std::array<double, 2> step_eigenvalues(double kappa, double reversal, double step_time,
                                        double height, double gravity) noexcept;
 

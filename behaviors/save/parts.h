@@ -73,7 +73,7 @@ struct SavePlanner {
   void refuse(core::Mark mark, const std::string& name, const std::string& reason);
 };
 
-// edits.cc: the texts that change for one parameter, each in the file that it belongs to.
+// text_edits.cc: the texts that change for one parameter, each in the file that it belongs to.
 void place_edits(SavePlanner& planner, const Wanted& wanted);
 // A file that is to change, read at its first use; nullptr and a refusal if it cannot be changed.
 SavePlanner::File* open_file(SavePlanner& planner, const std::string& path, core::Mark mark,
@@ -93,7 +93,7 @@ std::string whole_text(const SaveSource& source, const Wanted& wanted);
 std::vector<KeyPath> paths_of(const core::YamlNode& root, const core::YamlNode& node);
 bool begins_with(const KeyPath& path, const KeyPath& head);
 
-// check.cc: loads the behavior with the changes as if they had been written. Reasons why it is
+// verify.cc: loads the behavior with the changes as if they had been written. Reasons why it is
 // not the old one with the wanted values and nothing else; `allowed`: what may differ in the tree.
 // Without one, `notes` gets what check_physics() newly finds wrong with it: `run` would refuse it.
 std::vector<std::string> reasons_against_result(const SaveSource& old, const std::string& path,

@@ -57,7 +57,7 @@ class Statechart {
   void begin_tick(std::int64_t tick) noexcept;
   // Appends to the external queue; false: full (counted, and fault.event.overflow is raised).
   bool raise(int event) noexcept;
-  // The safe state is entered ahead of this tick's transitions (rule 10).
+  // The safe state is entered ahead of this tick's transitions (docs/behaviors.md 8.10).
   void request_safe() noexcept { safe_requested_ = true; }
   // One tick: event-less transitions, internal events, external events until all queues are empty.
   void run() noexcept;

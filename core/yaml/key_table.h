@@ -2,7 +2,7 @@
 // take the names of keys and words from these tables, the JSON Schema and the reference are printed
 // from them; so none of the three can know a key that the others do not.
 //
-// The tables are constants beside their loaders: behaviors/language/language*.cc,
+// The tables are constants beside their loaders: behaviors/language/*.cc,
 // model/robot/keys.cc, sim/world/keys.cc. The functions are for load time.
 #pragma once
 

@@ -44,6 +44,26 @@ void McapWriter::write_statistics() {
   put_record(static_cast<std::uint8_t>(McapRecord::statistics), scratch_);
 }
 
+void McapWriter::write_attachment_index(const AttachmentEntry& entry) {
+  McapBytes content(scratch_);
+  content.u64(entry.offset);
+  content.u64(entry.length);
+  content.u64(0);  // log time
+  content.u64(0);  // creation time
+  content.u64(entry.size);
+  content.text(entry.name);
+  content.text(entry.media_type);
+  put_record(static_cast<std::uint8_t>(McapRecord::attachment_index), scratch_);
+}
+
+void McapWriter::write_metadata_index(const MetadataEntry& entry) {
+  McapBytes content(scratch_);
+  content.u64(entry.offset);
+  content.u64(entry.length);
+  content.text(entry.name);
+  put_record(static_cast<std::uint8_t>(McapRecord::metadata_index), scratch_);
+}
+
 void McapWriter::write_summary() {
   scratch_.clear();
   McapBytes(scratch_).u32(data_crc_);
@@ -75,26 +95,10 @@ void McapWriter::write_summary() {
     for (const ChunkEntry& entry : chunks_) write_chunk_index(entry);
   });
   group(McapRecord::attachment_index, [&] {
-    for (const AttachmentEntry& entry : attachments_) {
-      McapBytes content(scratch_);
-      content.u64(entry.offset);
-      content.u64(entry.length);
-      content.u64(0);  // log time
-      content.u64(0);  // creation time
-      content.u64(entry.size);
-      content.text(entry.name);
-      content.text(entry.media_type);
-      put_record(static_cast<std::uint8_t>(McapRecord::attachment_index), scratch_);
-    }
+    for (const AttachmentEntry& entry : attachments_) write_attachment_index(entry);
   });
   group(McapRecord::metadata_index, [&] {
-    for (const MetadataEntry& entry : metadata_) {
-      McapBytes content(scratch_);
-      content.u64(entry.offset);
-      content.u64(entry.length);
-      content.text(entry.name);
-      put_record(static_cast<std::uint8_t>(McapRecord::metadata_index), scratch_);
-    }
+    for (const MetadataEntry& entry : metadata_) write_metadata_index(entry);
   });
   const std::uint64_t offset_start = position();
   for (const Group& g : groups) {

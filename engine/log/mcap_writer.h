@@ -82,6 +82,8 @@ class McapWriter {
   void write_indices(ChunkEntry& entry);
   void write_summary();
   void write_chunk_index(const ChunkEntry& entry);
+  void write_attachment_index(const AttachmentEntry& entry);
+  void write_metadata_index(const MetadataEntry& entry);
   void write_statistics();
   std::uint64_t position() const { return written_ + out_.size(); }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -78,7 +79,7 @@ struct PortraitColumns {
   bool valid() const { return x && y && vx && vy; }
 };
 
-// What is said of one step beside the portraits.
+// The text beside the portraits for one step.
 struct StepFact {
   double time = 0.0;  // s, of its end
   std::string text;
@@ -94,6 +95,82 @@ std::string step_slider(const std::vector<StepFact>& facts) {
       "</output><button id=\"step-go\">plots there</button></p>",
       facts.size(), escape_html(list.dump()));
 }
+
+// Phase portraits of both axes of the heading frame, one curve for each support phase.
+class Portraits {
+ public:
+  explicit Portraits(const Log& log)
+      : log_(log), columns_(log), feet_(parts(log, "contact.", "")), plans_(planners(log)) {}
+
+  std::array<PlanePlot, 2> planes{
+      PlanePlot{"phase-x", "Forward", "x - foot, m", "velocity, m/s", {}, false, 0.02},
+      PlanePlot{"phase-y", "Sideways", "y - foot, m", "velocity, m/s", {}, false, 0.02}};
+  std::vector<StepFact> facts;
+
+  // Adds a phase, one of `count`; nothing if the log has no position of its foot.
+  void add(const SupportPhase& phase, std::size_t count) {
+    foot_x_ = log_.values("point." + phase.foot + ".x");
+    foot_y_ = log_.values("point." + phase.foot + ".y");
+    if (foot_x_ == nullptr || foot_y_ == nullptr) return;
+    yaw_ = columns_.yaw != nullptr ? at(*columns_.yaw, phase.begin) : 0.0;
+    const int step = static_cast<int>(facts.size()) + 1;
+    const PlaneCurve empty{
+        label_of(phase.foot), colour_of(phase.foot), Mark::line, {}, 0.55, -1, step};
+    std::array<PlaneCurve, 2> curve = {empty, empty};
+    const std::size_t stride = (phase.end - phase.begin) / kPortraitPoints + 1;
+    for (std::size_t row = phase.begin; row < phase.end; row += stride) {
+      const Point2 p = from_foot(row);
+      const Point2 v = turned(at(*columns_.vx, row), at(*columns_.vy, row), yaw_);
+      for (std::size_t k = 0; k < 2; ++k) curve[k].points.push_back({p[k], v[k]});
+    }
+    for (std::size_t k = 0; k < 2; ++k) planes[k].curves.push_back(std::move(curve[k]));
+    const std::size_t end = phase.end - 1;
+    facts.push_back({log_.time[end], fmt::format("{} of {}, on the {} until {:.3f} s", step, count,
+                                                 phase.foot, log_.time[end])});
+    if (!plans_.empty() && plans_[0].predicts()) add_prediction(end, step);
+  }
+
+ private:
+  // The planner's prediction for the phase's last row, and how far the robot was from it.
+  void add_prediction(std::size_t end, int step) {
+    const Point2 p = {at(*plans_[0].position[0], end), at(*plans_[0].position[1], end)};
+    if (p == Point2{0.0, 0.0}) return;  // nothing was planned yet
+    const Point2 q = turned(p[0] - at(*foot_x_, end), p[1] - at(*foot_y_, end), yaw_);
+    const Point2 v = turned(at(*plans_[0].velocity[0], end), at(*plans_[0].velocity[1], end), yaw_);
+    const char* label = any_predicted_ ? "" : "predicted for the switch";
+    for (std::size_t k = 0; k < 2; ++k) {
+      planes[k].curves.push_back({label, "plan", Mark::cross, {{q[k], v[k]}}, 0.9, -1, step});
+    }
+    any_predicted_ = true;
+    const Point2 reached = from_foot(end);
+    facts.back().text += fmt::format("; there, from the prediction: x {:+.1f} mm, y {:+.1f} mm",
+                                     1e3 * (reached[0] - q[0]), 1e3 * (reached[1] - q[1]));
+  }
+  // Position of the centre of mass from the stance foot, m, heading frame.
+  Point2 from_foot(std::size_t row) const {
+    return turned(at(*columns_.x, row) - at(*foot_x_, row),
+                  at(*columns_.y, row) - at(*foot_y_, row), yaw_);
+  }
+  // The legend names each foot once.
+  std::string label_of(const std::string& foot) {
+    if (std::ranges::find(named_, foot) != named_.end()) return "";
+    named_.push_back(foot);
+    std::string label = "on the " + foot;
+    std::ranges::replace(label, '_', ' ');
+    return label;
+  }
+  std::string colour_of(const std::string& foot) const {
+    return !feet_.empty() && foot == feet_[0] ? "c1" : "c2";
+  }
+
+  const Log& log_;
+  PortraitColumns columns_;
+  std::vector<std::string> feet_, named_;
+  std::vector<PlannerColumns> plans_;
+  bool any_predicted_ = false;
+  const std::vector<float>*foot_x_ = nullptr, *foot_y_ = nullptr;  // of the phase that is added
+  double yaw_ = 0.0;                                               // rad, at its start
+};
 
 }  // namespace
 
@@ -146,65 +223,13 @@ Section phase_section(const Log& log) {
       "",
       {},
       {}};
-  const PortraitColumns columns(log);
   std::vector<SupportPhase> phases = step_phases(log);
-  if (!columns.valid() || phases.empty()) return section;
+  if (!PortraitColumns(log).valid() || phases.empty()) return section;
   if (phases.size() > kPortraits) phases.erase(phases.begin(), phases.end() - kPortraits);
-  const std::vector<std::string> feet = parts(log, "contact.", "");
-  const std::vector<PlannerColumns> plans = planners(log);
-  PlanePlot forward{"phase-x", "Forward", "x - foot, m", "velocity, m/s", {}, false, 0.02};
-  PlanePlot sideways{"phase-y", "Sideways", "y - foot, m", "velocity, m/s", {}, false, 0.02};
-  bool any_predicted = false;
-  std::vector<StepFact> facts;
-  std::vector<std::string> named;
-  for (const SupportPhase& phase : phases) {
-    const auto* foot_x = log.values("point." + phase.foot + ".x");
-    const auto* foot_y = log.values("point." + phase.foot + ".y");
-    if (foot_x == nullptr || foot_y == nullptr) continue;
-    const double yaw = columns.yaw != nullptr ? at(*columns.yaw, phase.begin) : 0.0;
-    const bool first = std::ranges::find(named, phase.foot) == named.end();
-    if (first) named.push_back(phase.foot);
-    std::string label = "on the " + phase.foot;
-    std::ranges::replace(label, '_', ' ');
-    const std::string colour = !feet.empty() && phase.foot == feet[0] ? "c1" : "c2";
-    const int step = static_cast<int>(facts.size()) + 1;
-    const PlaneCurve empty{first ? label : "", colour, Mark::line, {}, 0.55, -1, step};
-    std::array<PlaneCurve, 2> curve = {empty, empty};
-    const std::size_t stride = (phase.end - phase.begin) / kPortraitPoints + 1;
-    for (std::size_t row = phase.begin; row < phase.end; row += stride) {
-      const Point2 p = turned(at(*columns.x, row) - at(*foot_x, row),
-                              at(*columns.y, row) - at(*foot_y, row), yaw);
-      const Point2 v = turned(at(*columns.vx, row), at(*columns.vy, row), yaw);
-      for (std::size_t k = 0; k < 2; ++k) curve[k].points.push_back({p[k], v[k]});
-    }
-    forward.curves.push_back(std::move(curve[0]));
-    sideways.curves.push_back(std::move(curve[1]));
-    const std::size_t end = phase.end - 1;
-    facts.push_back({log.time[end], fmt::format("{} of {}, on the {} until {:.3f} s", step,
-                                                phases.size(), phase.foot, log.time[end])});
-    if (plans.empty() || !plans[0].predicts()) continue;
-    const Point2 p = {at(*plans[0].position[0], end), at(*plans[0].position[1], end)};
-    if (p == Point2{0.0, 0.0}) continue;  // nothing was planned yet
-    const Point2 q = turned(p[0] - at(*foot_x, end), p[1] - at(*foot_y, end), yaw);
-    const Point2 v = turned(at(*plans[0].velocity[0], end), at(*plans[0].velocity[1], end), yaw);
-    for (std::size_t k = 0; k < 2; ++k) {
-      PlaneCurve& to = k == 0 ? forward.curves.emplace_back() : sideways.curves.emplace_back();
-      to = {any_predicted ? "" : "predicted for the switch",
-            "plan",
-            Mark::cross,
-            {{q[k], v[k]}},
-            0.9,
-            -1,
-            step};
-    }
-    any_predicted = true;
-    const Point2 reached =
-        turned(at(*columns.x, end) - at(*foot_x, end), at(*columns.y, end) - at(*foot_y, end), yaw);
-    facts.back().text += fmt::format("; there, from the prediction: x {:+.1f} mm, y {:+.1f} mm",
-                                     1e3 * (reached[0] - q[0]), 1e3 * (reached[1] - q[1]));
-  }
-  section.html = step_slider(facts);
-  section.planes = {std::move(forward), std::move(sideways)};
+  Portraits portraits(log);
+  for (const SupportPhase& phase : phases) portraits.add(phase, phases.size());
+  section.html = step_slider(portraits.facts);
+  section.planes = {std::move(portraits.planes[0]), std::move(portraits.planes[1])};
   return section;
 }
 

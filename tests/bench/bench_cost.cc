@@ -182,6 +182,38 @@ int profile(const std::string& name) {
   return 0;
 }
 
+enum { kDual, kSingle, kStep, kFactor, kUpdate, kWbosc2, kWbosc1, kNaive2, kNaive1, kPartCount };
+using Parts = std::array<Part, kPartCount>;
+
+// Figures of one stance: `tick`, `wbosc` and `naive` are its places in `parts`.
+nlohmann::ordered_json stance_json(const Parts& parts, std::size_t tick, std::size_t wbosc,
+                                   std::size_t naive, double difference) {
+  const double algebra = parts[wbosc].lowest() + parts[kFactor].lowest();
+  return nlohmann::ordered_json{
+      {"tick_us", rounded(parts[tick].lowest())},
+      {"tick_median_us", rounded(parts[tick].median())},
+      {"mj_step_us", rounded(parts[kStep].lowest())},
+      {"mj_step_median_us", rounded(parts[kStep].median())},
+      {"tick_over_mj_step", rounded(parts[tick].lowest() / parts[kStep].lowest())},
+      {"tick_over_mj_step_median", rounded(parts[tick].median() / parts[kStep].median())},
+      {"model_us", rounded(parts[kUpdate].lowest())},
+      {"wbosc_us", rounded(algebra)},
+      {"naive_us", rounded(parts[naive].lowest())},
+      {"naive_over_reduced", rounded(parts[naive].lowest() / algebra)},
+      {"naive_over_reduced_median",
+       rounded(parts[naive].median() / (parts[wbosc].median() + parts[kFactor].median()))},
+      {"torque_difference", difference}};
+}
+
+long allocations_of(engine::ControlLoop& dual, engine::ControlLoop& single) {
+  const AllocationGuard guard;
+  for (int i = 0; i < kCalls; ++i) {
+    dual.tick();
+    single.tick();
+  }
+  return guard.allocations();
+}
+
 int run() {
   const Recording recording = record();
   Stance dual("dual", recording.dual), single("single", recording.single);
@@ -200,8 +232,7 @@ int run() {
   const auto literal = [&](Algebra& a) {
     return [&a, at](int i) { naive_wbosc(a.cases[at(i, kProblems)].naive); };
   };
-  enum { kDual, kSingle, kStep, kFactor, kUpdate, kWbosc2, kWbosc1, kNaive2, kNaive1, kParts };
-  std::array<Part, kParts> parts;
+  Parts parts;
   parts[kDual].call = [&](int) { dual.loop->tick(); };
   parts[kSingle].call = [&](int) { single.loop->tick(); };
   parts[kStep].call = [&](int) { physics.step(); };
@@ -218,39 +249,14 @@ int run() {
     for (Part& part : parts) part.round();
   }
 
-  long allocations = 0;
-  {
-    const AllocationGuard guard;
-    for (int i = 0; i < kCalls; ++i) {
-      dual.loop->tick();
-      single.loop->tick();
-    }
-    allocations = guard.allocations();
-  }
+  const long allocations = allocations_of(*dual.loop, *single.loop);
   std::vector<double> pace = paced(*dual.loop);
   const std::vector<double> more = paced(*single.loop);
   pace.insert(pace.end(), more.begin(), more.end());
 
-  const auto stance_json = [&](int tick, int wbosc, int naive, double difference) {
-    const double algebra = parts[wbosc].lowest() + parts[kFactor].lowest();
-    return nlohmann::ordered_json{
-        {"tick_us", rounded(parts[tick].lowest())},
-        {"tick_median_us", rounded(parts[tick].median())},
-        {"mj_step_us", rounded(parts[kStep].lowest())},
-        {"mj_step_median_us", rounded(parts[kStep].median())},
-        {"tick_over_mj_step", rounded(parts[tick].lowest() / parts[kStep].lowest())},
-        {"tick_over_mj_step_median", rounded(parts[tick].median() / parts[kStep].median())},
-        {"model_us", rounded(parts[kUpdate].lowest())},
-        {"wbosc_us", rounded(algebra)},
-        {"naive_us", rounded(parts[naive].lowest())},
-        {"naive_over_reduced", rounded(parts[naive].lowest() / algebra)},
-        {"naive_over_reduced_median",
-         rounded(parts[naive].median() / (parts[wbosc].median() + parts[kFactor].median()))},
-        {"torque_difference", difference}};
-  };
   const nlohmann::ordered_json result = {
-      {"dual", stance_json(kDual, kWbosc2, kNaive2, dual_algebra.torque_difference)},
-      {"single", stance_json(kSingle, kWbosc1, kNaive1, single_algebra.torque_difference)},
+      {"dual", stance_json(parts, kDual, kWbosc2, kNaive2, dual_algebra.torque_difference)},
+      {"single", stance_json(parts, kSingle, kWbosc1, kNaive1, single_algebra.torque_difference)},
       {"mj_step_contacts", rounded(physics.mean_contacts())},
       {"allocations", allocations},
       {"paced_tick_us", rounded(percentile(pace, 0.5))},

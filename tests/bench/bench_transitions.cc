@@ -52,15 +52,38 @@ tasks::ActiveControl carried_to_end(tasks::ActiveControl old, const tasks::Activ
   return old;
 }
 
+// Torque differences at the starts and ends of transitions, Nm.
+struct Ends {
+  double declared = 0.0, undeclared_min = 1e9, undeclared_max = 0.0;
+  std::int64_t count = 0;
+  // declared_step: as the behavior declares it; jump: between the two plain laws.
+  void add(double declared_step, double jump) {
+    declared = std::max(declared, declared_step);
+    undeclared_min = std::min(undeclared_min, jump);
+    undeclared_max = std::max(undeclared_max, jump);
+    ++count;
+  }
+};
+
+void print(const Ends& ends, double near_step, double impact_step, std::int64_t steps) {
+  const nlohmann::ordered_json out = {{"declared_Nm", ends.declared},
+                                      {"undeclared_Nm", ends.undeclared_max},
+                                      {"undeclared_min_Nm", ends.undeclared_min},
+                                      {"max_tick_step_Nm", near_step},
+                                      {"impact_step_Nm", impact_step},
+                                      {"ends", ends.count},
+                                      {"steps", steps}};
+  std::printf("%s\n", out.dump().c_str());
+}
+
 int run(const char* behavior_name) {
   tests::Rig rig(behavior_name);
   engine::ControlLoop& loop = *rig.loop;
   const int n = loop.model().joint_count();
   lab::StepCounter steps(2, loop.period());
   tasks::ActiveControl previous;
-  double declared = 0.0, undeclared_min = 1e9, undeclared_max = 0.0, near_step = 0.0,
-         impact_step = 0.0;
-  std::int64_t ends = 0;
+  double near_step = 0.0, impact_step = 0.0;  // Nm
+  Ends ends;
   double last_change = -1.0, last_impact = -1.0;
   std::array<bool, 2> contact{true, true};
   loop.start();
@@ -82,11 +105,8 @@ int run(const char* behavior_name) {
     if (loop.time() > kSettled && starts) {
       // releases begins at weight 1 (the law left), loads at weight 0 (this law alone).
       const double* before = now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      declared = std::max(declared, largest_difference(loop.commands().tau.data(), before, n));
-      const double jump = largest_difference(law.tau_primary(), law.tau_other(), n);
-      undeclared_min = std::min(undeclared_min, jump);
-      undeclared_max = std::max(undeclared_max, jump);
-      ++ends;
+      ends.add(largest_difference(loop.commands().tau.data(), before, n),
+               largest_difference(law.tau_primary(), law.tau_other(), n));
     }
     if (loop.time() > kSettled && ended) {
       tasks::WholeBodyController twin = law;  // same integrals
@@ -94,11 +114,8 @@ int run(const char* behavior_name) {
       twin.compute(old, loop.ticks(), loop.sensors().tau.data());
       const double* after =
           now.has_other && now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      declared = std::max(declared, largest_difference(twin.result().tau.data(), after, n));
-      const double jump = largest_difference(twin.tau_primary(), twin.tau_other(), n);
-      undeclared_min = std::min(undeclared_min, jump);
-      undeclared_max = std::max(undeclared_max, jump);
-      ++ends;
+      ends.add(largest_difference(twin.result().tau.data(), after, n),
+               largest_difference(twin.tau_primary(), twin.tau_other(), n));
     }
     if (starts || ended) last_change = loop.time();
     const double step = loop.signals()[loop.behavior().layout.torque_step];
@@ -112,14 +129,7 @@ int run(const char* behavior_name) {
     previous = now;
     loop.actuate();
   }
-  const nlohmann::ordered_json out = {{"declared_Nm", declared},
-                                      {"undeclared_Nm", undeclared_max},
-                                      {"undeclared_min_Nm", undeclared_min},
-                                      {"max_tick_step_Nm", near_step},
-                                      {"impact_step_Nm", impact_step},
-                                      {"ends", ends},
-                                      {"steps", steps.steps()}};
-  std::printf("%s\n", out.dump().c_str());
+  print(ends, near_step, impact_step, steps.steps());
   return steps.steps() >= kSteps ? 0 : 1;
 }
 

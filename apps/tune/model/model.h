@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/tune/model/history.h"
 #include "apps/tune/model/quantity.h"
+#include "apps/tune/model/signal_history.h"
 
 namespace footfall::apps {
 

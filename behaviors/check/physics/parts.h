@@ -31,13 +31,13 @@ std::string axis_name(const Behavior& behavior, const TaskRow& row);
 // can produce (rank.cc).
 void check_ranks(PhysicsContext& context, const ControlSpec& control, core::Mark state);
 // Internal forces against the friction cone, in all postures in which the robot can stand without
-// them (forces.cc).
+// them (friction_cone.cc).
 void check_internal_forces(PhysicsContext& context, const ControlSpec& control);
 // References against joint limits, legs' reach and the robot's tilt limit (reach.cc).
 void check_references(PhysicsContext& context);
-// Step-to-step maps of the planners (planner.cc).
+// Step-to-step maps of the planners (planner_stability.cc).
 void check_planners(PhysicsContext& context);
-// Torque steps where contacts change (steps.cc).
+// Torque steps where contacts change (torque_steps.cc).
 void check_torque_steps(PhysicsContext& context);
 
 }  // namespace footfall::behaviors

@@ -46,7 +46,7 @@ int re_entered(const Chart& chart, const TransitionInfo& transition) {
   return -1;
 }
 
-// Rule 5.2: a parallel state is never a domain.
+// docs/behaviors.md 8.2: a parallel state is never a domain.
 std::string say_re_entry(const Chart& chart, const TransitionInfo& transition, int parallel) {
   const StateInfo& source = chart.states[at(transition.source)];
   const std::string what = fmt::format("this leaves and re-enters all regions of '{}': ",

@@ -10,7 +10,7 @@
 
 #include "behaviors/loader.h"
 #include "lab/scenario/loader.h"
-#include "lab/sweep/plan/files.h"
+#include "lab/sweep/plan/derived_files.h"
 
 namespace footfall::lab {
 namespace {

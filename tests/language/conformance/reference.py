@@ -68,7 +68,7 @@ class Interpreter:
                 continue
             default = s.spec.get("default", [])
             default = [state_of[n] for n in ([default] if isinstance(default, str) else default)]
-            s.default = default or (s.parent.initial if s.parent.kind == "compound" else s.parent.states)  # ours: rule 6
+            s.default = default or (s.parent.initial if s.parent.kind == "compound" else s.parent.states)  # ours: docs/behaviors.md 8.6
         self.configuration, self.historyValue = set(), {}
         self.internalQueue, self.externalQueue = deque(), deque()
         self.variables = {"n": 0}
@@ -76,7 +76,7 @@ class Interpreter:
         self.entered_at, self.used = {}, set()
         self.enterStates(None)
 
-    # ours: a tick, as rule 3 says; the order is mainEventLoop's
+    # ours: a tick, docs/behaviors.md 8.3; the order is mainEventLoop's
     def tick(self, event=None):
         self.steps = 0
         if event is not None:
@@ -118,7 +118,7 @@ class Interpreter:
             return False
         if event is not None and not any(heard(pattern, event) for pattern in t.events):
             return False
-        if "after" in t.spec:  # ours: rule 4
+        if "after" in t.spec:  # ours: docs/behaviors.md 8.4
             if self.now < self.entered_at[t.source] + t.spec["after"] or (event is None and t in self.used):
                 return False
         return all(self.holds(part) for part in t.spec.get("when", []))

@@ -36,7 +36,7 @@ TEST(EveryKey, OfTheLanguageIsInAFileThatLoads) {
   EXPECT_EQ(said_of(kEveryKey).find("error:"), std::string::npos) << said_of(kEveryKey);
   core::Diagnostics diagnostics;
   const core::YamlNode root = core::load_yaml_text(kEveryKey, "b.yaml", diagnostics);
-  // A base is another file (yaml_test.cc).
+  // A base is another file (tests/unit/core/yaml).
   EXPECT_EQ(unused_keys(kBehaviorFile, key_uses(kBehaviorFile, root)),
             std::vector<std::string>{"behavior.base"});
 }

@@ -55,6 +55,15 @@ std::size_t RandomEdits::ranged() {
   return with.empty() ? 0 : with[static_cast<std::size_t>(below(static_cast<int>(with.size())))];
 }
 
+change_t RandomEdits::out_of_range(bool above) {
+  const std::size_t parameter = ranged();
+  const parameter_t& info = catalogue_.parameters[parameter];
+  change_t change = this->change(parameter);
+  const double width = info.max - info.min;
+  change.values[0] = above ? info.max + width : info.min - width;
+  return change;
+}
+
 request_t RandomEdits::invalid(int way) {
   request_t request = valid();
   change_t& some =
@@ -67,14 +76,9 @@ request_t RandomEdits::invalid(int way) {
       some.name.clear();
       break;
     case 2:
-    case 3: {
-      const std::size_t parameter = ranged();
-      const parameter_t& info = catalogue_.parameters[parameter];
-      request.changes = {change(parameter)};
-      const double width = info.max - info.min;
-      request.changes[0].values[0] = way == 2 ? info.max + width : info.min - width;
+    case 3:
+      request.changes = {out_of_range(way == 2)};
       break;
-    }
     case 4:
       some.values[0] = std::numeric_limits<double>::quiet_NaN();
       break;

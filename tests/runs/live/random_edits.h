@@ -27,6 +27,7 @@ class RandomEdits {
   double part();  // 0 to 1
   footfall_lcm::change_t change(std::size_t parameter);
   std::size_t ranged();  // a parameter that has a range
+  footfall_lcm::change_t out_of_range(bool above);
 
   const footfall_lcm::catalogue_t& catalogue_;
   std::mt19937_64 random_;

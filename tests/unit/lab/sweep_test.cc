@@ -13,7 +13,7 @@
 #include "lab/sweep/plan/sample.h"
 #include "lab/sweep/results/factors.h"
 #include "lab/sweep/results/report.h"
-#include "lab/sweep/results/session.h"
+#include "lab/sweep/results/runner.h"
 #include "lab/sweep/results/store.h"
 
 namespace footfall::lab {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The conformance suite, one file a rule of section 5, and random charts against Appendix D in Python."""
+"""The conformance suite, one file a paragraph of docs/behaviors.md section 8, and random charts against Appendix D in Python."""
 import re
 import subprocess
 import sys

@@ -219,7 +219,7 @@ TEST(PhysicsSteps, AFootReleasedAtOnceIsWarnedAboutAtTheTransition) {
   EXPECT_THAT(said, HasSubstr("when 'both' is left, from right_foot and left_foot to right_foot "
                               "alone (the robot's bound is 5 Nm): ramp it with a "
                               "contact_transition that releases in the state entered"));
-  // hume-facts E8: 24-28 Nm on Hume without transition.
+  // docs/acceptance.md, row transitions: 24-28 Nm on Hume without transition.
   const std::size_t by = said.find("steps by ");
   ASSERT_NE(by, std::string::npos);
   EXPECT_NEAR(std::stod(said.substr(by + 9)), 26.0, 2.5);

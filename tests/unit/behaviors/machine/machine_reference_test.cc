@@ -1,4 +1,4 @@
-// References at run time, sentence by sentence of the language's section on control: what starts
+// References at run time, sentence by sentence of docs/behaviors.md 8.9 and 3.4: what starts
 // where, what is kept, what is read when; ellipses, waypoints and surfaces.
 #include <gtest/gtest.h>
 

@@ -110,7 +110,7 @@ TEST(FootPlanner, EigenvaluesInClosedFormAreThoseOfThePlannerItself) {
   }
 }
 
-// Printed to two digits; height and step time are the fit of hume-facts E2.
+// Printed to two digits; height and step time are those of E2 in docs/notation.md.
 TEST(FootPlanner, ReproducesTableTwo) {
   FootPlannerSpec spec;
   spec.kappa = {0.4, 0.4};

@@ -19,9 +19,6 @@ using LiveHistory = LiveServer;
 // The model: a list of value lists and a place in it.
 TEST_F(LiveHistory, AnySequenceOfEditsUndosAndRedosIsThatOfANaiveStack) {
   std::mt19937_64 random(11);
-  const auto uniform = [&](double a, double b) {
-    return std::uniform_real_distribution<double>(a, b)(random);
-  };
   std::vector<std::vector<double>> states = {{0.145, 0.0, 0.0}};
   std::size_t place = 0;
   std::vector<std::pair<request_t, bool>> asked;  // and whether the model says it can be done
@@ -40,9 +37,9 @@ TEST_F(LiveHistory, AnySequenceOfEditsUndosAndRedosIsThatOfANaiveStack) {
       place += possible ? 1 : 0;
     } else {
       std::vector<double> next = states[place];
-      next[0] = uniform(0.08, 0.4);
+      next[0] = std::uniform_real_distribution<double>(0.08, 0.4)(random);
       const std::size_t y = random() % 2;
-      next[1 + y] = uniform(-5.0, 5.0);
+      next[1 + y] = std::uniform_real_distribution<double>(-5.0, 5.0)(random);
       possible = random() % 4 != 0;  // else one of the two is out of range
       --sequence;
       request = edit({{"lift_time", {next[0]}},

@@ -1,5 +1,5 @@
-// Frames to ffmpeg; see movie.h.
-#include "sim/view/movie.h"
+// Frames to ffmpeg; see video.h.
+#include "sim/view/video.h"
 
 #include <csignal>
 #include <cstdlib>

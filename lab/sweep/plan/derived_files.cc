@@ -1,5 +1,5 @@
-// Derived scenarios and worlds; see files.h.
-#include "lab/sweep/plan/files.h"
+// Derived scenarios and worlds; see derived_files.h.
+#include "lab/sweep/plan/derived_files.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-// Children of a sweep and what they say; see session.h.
-#include "lab/sweep/results/session.h"
+// Child processes of a sweep and their results; see runner.h.
+#include "lab/sweep/results/runner.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "lab/suite/suite.h"
-#include "lab/sweep/plan/files.h"
+#include "lab/sweep/plan/derived_files.h"
 
 namespace footfall::lab {
 namespace {

@@ -1,5 +1,5 @@
-// OpenGL without a screen; see context.h.
-#include "sim/view/context.h"
+// OpenGL without a screen; see egl_context.h.
+#include "sim/view/egl_context.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

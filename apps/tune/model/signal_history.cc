@@ -1,5 +1,5 @@
-// The past of all signals, and a plot of one as text; see history.h.
-#include "apps/tune/model/history.h"
+// The past of all signals, and a plot of one as text; see signal_history.h.
+#include "apps/tune/model/signal_history.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-// MuJoCo's renderer without a window; see film.h.
-#include "sim/view/film.h"
+// MuJoCo's renderer without a window; see renderer.h.
+#include "sim/view/renderer.h"
 
 #include <mujoco/mujoco.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "model/mjcf.h"
-#include "sim/view/context.h"
+#include "sim/view/egl_context.h"
 
 namespace footfall::sim {
 namespace {

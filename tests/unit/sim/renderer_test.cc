@@ -1,5 +1,5 @@
 // Pictures without a window: something is drawn, it follows the configuration, errors are clear.
-#include "sim/view/film.h"
+#include "sim/view/renderer.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <set>
 
-#include "sim/view/movie.h"
+#include "sim/view/video.h"
 
 namespace footfall::sim {
 namespace {

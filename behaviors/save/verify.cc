@@ -1,11 +1,10 @@
 // Whether changed files load to what was asked for, and to nothing else; see parts.h.
-#include "behaviors/check/physics/check.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
+#include "behaviors/check/physics/check.h"
 #include "behaviors/compile.h"
 #include "behaviors/loader.h"
 #include "behaviors/save/parts.h"
