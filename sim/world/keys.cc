@@ -4,7 +4,7 @@
 namespace footfall::sim {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
 constexpr KeySpec kWorldRows[] = {
     key("world", integer(1, 1), "the version of world files; the first key").required(),
