@@ -4,7 +4,7 @@
 namespace footfall::lab {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
 constexpr KeySpec kScenarioRows[] = {
     key("scenario", integer(1, 1), "the version of scenario files; the first key").required(),

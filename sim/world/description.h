@@ -84,12 +84,10 @@ struct WorldDescription {
   model::HeightSurface surface;  // nominal CoM height follows this surface
   ActuatorSettings actuators;
   SensorSettings sensors;
-  model::ModelDeviation
-      control_model;  // model errors of the controller: `mass: "+5 %"` is mass_scale 1.05
+  model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
   std::vector<ConstraintName> constraints;
   double planner_latency = 2e-3;  // s, between planner request and plan, in lock-step
-  double start_velocity =
-      0.0;  // m/s, standard deviation of the base's horizontal velocity at start
+  double start_velocity = 0.0;  // m/s, standard deviation of the base's initial horizontal velocity
   PhysicsSettings physics;
 };
 
