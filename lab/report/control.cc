@@ -11,7 +11,7 @@ namespace {
 
 std::string colour(std::size_t index) { return kColours[index % kColours.size()]; }
 
-// A plain number where an angle is meant reads better as rad, and its second derivative as rad/s².
+// Displays a dimensionless angle as rad, and its second derivative as rad/s².
 std::string readable(const std::string& unit) {
   static const std::map<std::string, std::string> names = {
       {"", "rad"}, {"1/s", "rad/s"}, {"1/s^2", "rad/s²"}, {"m/s^2", "m/s²"}, {"Nm", "N m"}};

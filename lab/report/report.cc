@@ -1,4 +1,4 @@
-// Puts the page together; see report.h.
+// Assembles the page; see report.h.
 #include "lab/report/report.h"
 
 #include <fmt/format.h>
@@ -12,10 +12,10 @@
 namespace footfall::lab {
 namespace {
 
-constexpr std::size_t kZoomPoints = 12000;  // four steps, every tick
+constexpr std::size_t kZoomPoints = 12000;  // four steps at every tick
 constexpr std::size_t kZoomSteps = 4;
 
-// Rows of the last steps, from one mark `step` of the counter to the end.
+// First row of the last steps, given by the step counter.
 std::size_t zoom_begin(const Log& log) {
   const auto* steps = log.values("steps");
   if (steps == nullptr || steps->empty()) return 0;

@@ -4,7 +4,7 @@
 namespace footfall::lab {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
 constexpr WordSpec kFaultRows[] = {
     {"none", "nothing fails"},

@@ -1,4 +1,4 @@
-// Shares, success maps and sensitivities of a sweep's report; see report.h.
+// Success rates, success maps and sensitivities of a sweep's report; see report.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::string interval_text(const Share& share) {
 
 bool comparable(const SweepRow& row) { return row.result.status == SweepStatus::passed; }
 
-// Of the runs that passed and have this level.
+// Median over the passed runs with this level.
 double median_figure(const SweepTable& table, const SweepFactor& factor, int level,
                      const std::string& figure) {
   std::vector<double> values;
@@ -54,7 +54,7 @@ std::string map_cell(const Share& share, const std::string& where) {
                      100.0 * share.value(), escape_html(text), percent(share.value()), share.of);
 }
 
-// x to the right, y downwards in the order of the plan.
+// x to the right, y downwards in plan order.
 std::string map_html(const SweepTable& table, const SweepFactor& x, const SweepFactor& y) {
   std::string out = fmt::format(
       "<figure><figcaption>{} (rows) against {} (columns)</figcaption>"
@@ -75,7 +75,7 @@ std::string map_html(const SweepTable& table, const SweepFactor& x, const SweepF
   return out + "</table></div></figure>";
 }
 
-// A figure against a parameter, of the runs that passed.
+// A figure of merit against a parameter, for passed runs.
 struct Samples {
   std::vector<double> x, y;
   std::vector<int> level;
@@ -109,7 +109,7 @@ PlanePlot sensitivity_plot(const SweepFactor& factor, const std::string& figure,
       median{"median", "c0", Mark::line, {}, 1.0};
   PlaneCurve high = low;
   high.label.clear();
-  std::vector<std::pair<double, int>> places;  // where each level lies
+  std::vector<std::pair<double, int>> places;  // position and level
   for (std::size_t i = 0; i < factor.levels.size(); ++i) {
     std::vector<double> x;
     for (std::size_t k = 0; k < samples.x.size(); ++k) {
