@@ -17,7 +17,7 @@ struct GraphOptions {
   std::vector<std::string> expand;
 };
 
-// The format that was asked for, else that of the file's ending, else SVG.
+// The format given by option, else by the file's extension, else SVG.
 std::string format_of(const GraphOptions& options) {
   if (!options.format.empty()) return options.format;
   if (options.out.ends_with(".dot") || options.out.ends_with(".gv")) return "dot";

@@ -1,5 +1,4 @@
-// `footfall set`: new values of a behavior's parameters and gains, written where they stand in its
-// files.
+// `footfall set`: writes new values of a behavior's parameters and gains to its files, in place.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,21 +22,21 @@ struct SetOptions {
   bool dry_run = false, yes = false;
 };
 
-// One number of a value, SI; a bare one is SI already.
+// One number of a value in SI; bare numbers are SI.
 std::optional<double> read_number(const core::YamlNode& node, const behaviors::ParameterInfo& info,
                                   core::Diagnostics& diagnostics) {
   return info.bare ? core::read_quantity(node, core::kNone, diagnostics)
                    : core::read_quantity(node, info.dimension, diagnostics);
 }
 
-// NAME=VALUE as what is asked of plan_save(): a list, or one number for all values of NAME.
+// Converts NAME=VALUE for plan_save(): a list, or one number for all values of NAME.
 std::optional<behaviors::SavedValue> read_setting(const behaviors::Behavior& behavior,
                                                   const std::string& name, const std::string& text,
                                                   core::Diagnostics& diagnostics) {
   const core::YamlNode node = core::load_yaml_text(text, name, diagnostics);
   const behaviors::ParameterPart part = behavior.find_parameter_part(name);
   behaviors::SavedValue value{name, {}};
-  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() says why it is unknown
+  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() reports the reason
   const auto& info = behavior.parameters[static_cast<std::size_t>(part.parameter)];
   const std::size_t size = part.component < 0 ? static_cast<std::size_t>(info.size) : 1;
   const std::vector<core::YamlNode> items =

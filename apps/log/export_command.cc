@@ -38,7 +38,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-// Columns in the log's order; a pattern that fits none is a mistake.
+// Selected columns in log order; a pattern without match is an error.
 std::vector<std::size_t> chosen(const ExportArguments& arguments, const lab::Log& log) {
   std::vector<bool> wanted(log.signals.size(), arguments.signals.empty());
   for (const std::string& pattern : arguments.signals) {
@@ -72,7 +72,7 @@ std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, d
     for (const std::size_t s : columns) {
       const float value = log.column[s][row];
       if (value != value) {
-        out.push_back(',');  // not in force: an empty field
+        out.push_back(',');  // no value: an empty field
       } else {
         fmt::format_to(std::back_inserter(out), ",{}", value);
       }

@@ -1,5 +1,4 @@
-// `footfall replay` and `footfall diff`: the tick again on what a log has, and two logs side by
-// side.
+// `footfall replay` and `footfall diff`: repeats a run from its log, and compares two logs.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +28,7 @@ void print_lines(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("  {}\n", line);
 }
 
-// `name`: of a reload, empty for the log that begins with the run.
+// `name`: name of a reload, empty for the log at the beginning of the run.
 int verify(const std::string& name, const lab::Log& log, lab::Replay& replay) {
   if (!name.empty()) fmt::print("{}: ", name);
   const lab::ReplayReport report = lab::verify_replay(log, replay);

@@ -1,4 +1,4 @@
-// `footfall why`: what a behavior decided at a moment of a logged run, and by which values.
+// `footfall why`: explains a behavior's decisions at a moment of a logged run.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

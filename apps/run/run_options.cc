@@ -11,7 +11,7 @@ namespace footfall::apps {
 
 namespace {
 
-// CLI11's own message lists the limits of a double.
+// CLI11's own message would list the limits of a double.
 CLI::Validator at_least(std::int64_t least, const char* what) {
   return CLI::Validator(
       [least, what](std::string& text) {

@@ -11,7 +11,7 @@
 namespace footfall::apps {
 namespace {
 
-// Options that a sweep file says itself.
+// Options with an equivalent in sweep files.
 void add_plan_options(CLI::App& command, SweepCommandOptions& o) {
   lab::SweepArguments& p = o.plan;
   const auto list = [&](const char* name, std::vector<std::string>& to, const char* doc) {

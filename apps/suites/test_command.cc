@@ -1,4 +1,4 @@
-// `footfall test`: runs scenarios as tests, side by side, each in a process of its own.
+// `footfall test`: runs scenarios as tests, in parallel, each in its own process.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -35,7 +35,7 @@ struct TestOptions {
   bool bless = false, yes = false;
 };
 
-// The places where a project keeps its scenarios.
+// Folders in which projects keep their scenarios.
 std::vector<std::string> default_folders() {
   std::vector<std::string> folders;
   for (const char* folder : {"tests/runs/regression", "behaviors"}) {
@@ -71,7 +71,7 @@ double read_timeout(const std::string& text) {
 
 std::string session_file(const TestOptions& options) { return options.out + "/session.json"; }
 
-// The files of what failed in the last session.
+// Files of the scenarios that failed in the last session.
 std::vector<std::string> failed_before(const TestOptions& options) {
   std::string text;
   try {
@@ -107,7 +107,7 @@ lab::SuiteSelection selection_of(const TestOptions& options) {
   return selection;
 }
 
-// What is to be run; empty if the last session had no failures.
+// The scenarios to run; empty if only failures were requested and there were none.
 std::vector<lab::SuiteScenario> choose(const TestOptions& options) {
   const lab::SuiteSelection selection = selection_of(options);
   std::vector<std::string> files;
@@ -203,7 +203,7 @@ int exit_code_of(const Suite& suite) {
 }
 
 void write_results(const TestOptions& options, const Suite& suite) {
-  // Bytes that are no UTF-8 (a child's stderr) are shown as such, not an exception.
+  // Invalid UTF-8 (a child's stderr) is replaced instead of raising an exception.
   const auto text = [](const nlohmann::ordered_json& json) {
     return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   };
@@ -230,7 +230,7 @@ lab::SuiteSettings settings_of(const TestOptions& options) {
   return settings;
 }
 
-// Only what has a golden trace, and of that the seed that the trace is of.
+// Keeps only scenarios with a golden trace, and of those only the seed of the trace.
 void keep_golden(std::vector<lab::SuiteScenario>& scenarios) {
   std::erase_if(scenarios, [](const lab::SuiteScenario& s) { return s.golden.empty(); });
   for (lab::SuiteScenario& scenario : scenarios) scenario.seeds.resize(1);
@@ -244,7 +244,7 @@ bool agreed(std::size_t count) {
   return answer == 'y' || answer == 'Y';
 }
 
-// Shows what would change, asks, writes.
+// Shows the changes, asks, writes.
 int bless_traces(const TestOptions& options, const Suite& suite) {
   std::vector<lab::Blessing> list = lab::blessings(suite);
   bool refused = suite.interrupted;

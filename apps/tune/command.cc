@@ -14,7 +14,7 @@ namespace {
 
 using Options = std::shared_ptr<TuneOptions>;
 
-// A time with its unit into `seconds`.
+// Adds an option for a time with unit, stored in `seconds`.
 void add_time(CLI::App& command, const std::string& name, double& seconds,
               const std::string& text) {
   command.add_option_function<std::string>(
@@ -30,7 +30,7 @@ void add_time(CLI::App& command, const std::string& name, double& seconds,
       text);
 }
 
-// Does it; what goes wrong is said on stderr.
+// Runs an action; errors are printed on stderr.
 int run_action(const TuneOptions& options, int (*action)(const TuneOptions&)) {
   try {
     return action(options);
