@@ -272,8 +272,7 @@ class SchemaWriter {
 
   // Stores long patterns once, named after their error message.
   Json shared(Json value) {
-    std::string name =
-        value["patternErrorMessage"].get<std::string>().substr(9);  // after "expected "
+    std::string name = value["patternErrorMessage"].get<std::string>().substr(9);  // "expected "
     for (char& c : name) {
       if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
     }

@@ -1,10 +1,10 @@
-// The root of a behavior file and its sections, but for states and tasks; see language.h.
+// The root of a behavior file and its sections except states and tasks; see language.h.
 #include "behaviors/language/language.h"
 
 namespace footfall::behaviors {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
 constexpr KeySpec kBehaviorRows[] = {
     key("behavior", integer(1, 1), "the version of the language; the first key of the file")

@@ -4,7 +4,7 @@
 namespace footfall::behaviors {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
 constexpr WordSpec kStateTypeRows[] = {
     {"parallel", "all its states are active together"},

@@ -4,9 +4,9 @@
 namespace footfall::behaviors {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
-// Each has its TaskTypeInfo (behaviors/load/control/signals.cc), a test holds them together.
+// Each row has its TaskTypeInfo (behaviors/load/control/signals.cc); a test compares them.
 constexpr WordSpec kTaskTypeRows[] = {
     {"com_position", "the centre of mass"},
     {"body_orientation",

@@ -1,4 +1,4 @@
-// What expressions and `on:` may say beside the author's own names; see language.h.
+// Built-in names of expressions and of `on:`; see language.h.
 #include "behaviors/language/language.h"
 
 namespace footfall::behaviors {
