@@ -1,4 +1,4 @@
-// History of all signals, and a plot of one as text; see history.h.
+// The past of all signals, and a plot of one as text; see history.h.
 #include "apps/tune/model/history.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Writes derived scenarios and worlds; see files.h.
+// Derived scenarios and worlds; see files.h.
 #include "lab/sweep/plan/files.h"
 
 #include <fmt/format.h>

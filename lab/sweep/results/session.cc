@@ -1,4 +1,4 @@
-// Runs the children of a sweep and reads their results; see session.h.
+// Children of a sweep and what they say; see session.h.
 #include "lab/sweep/results/session.h"
 
 #include <fmt/format.h>
