@@ -88,8 +88,7 @@ class Machine {
   // Copies the external events waiting for the next tick, in order, to the end of `events`, as far
   // as it has room.
   void copy_outside_events(std::vector<int>& events) const noexcept;
-  // Raises the event `fault.NAME`; with reaction safe_state the `safe` state is entered in this
-  // tick.
+  // Fault events `fault.NAME`; with reaction safe_state the `safe` state is entered at this tick.
   void raise_fault(core::Fault fault, core::Reaction reaction) noexcept;
   void enter_safe() noexcept;  // docs/behaviors.md 8.10
 

@@ -78,7 +78,7 @@ struct PortraitColumns {
   bool valid() const { return x && y && vx && vy; }
 };
 
-// Data of one step shown beside the portraits.
+// The text beside the portraits for one step.
 struct StepFact {
   double time = 0.0;  // s, end of the step
   std::string text;
