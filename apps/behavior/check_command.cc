@@ -183,9 +183,8 @@ void add_check_command(CLI::App& app, int& exit_code) {
       ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
   command->add_flag("--json", options->json, "One JSON object with every problem");
-  command->add_option(
-      "--stdin-name", options->stdin_name,
-      "What stands for the file of - in messages; `base:` and `robot:` are sought beside it");
+  command->add_option("--stdin-name", options->stdin_name,
+                      "File name for - in messages; `base:` and `robot:` are searched beside it");
   command->footer(
       "Exit codes: 0 clean, 1 warnings with --strict, 2 errors.\n"
       "Example: footfall check --strict behaviors/library/balance.yaml robots/hume/robot.yaml");

@@ -179,7 +179,7 @@ int explain(const ConfigOptions& options, Config& config) {
 void add_config_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ConfigOptions>();
   CLI::App* command = app.add_subcommand(
-      "config", "Prints a file with its bases and --set applied, or where a value comes from");
+      "config", "Prints a file with its bases and --set applied, or the origin of a value");
   command->add_option("FILE", options->file, "Behavior file or name; robot, world or scenario file")
       ->required();
   auto* explained = command->add_option(

@@ -36,7 +36,7 @@ std::optional<std::string> format_text(const std::string& name, const std::strin
   if (same && !problems.has_errors() && core::format_yaml(*formatted) == formatted)
     return formatted;
   // Never change the meaning: leave the file unformatted.
-  fmt::print(stderr, "{}: error: cannot be laid out without a change of meaning; left as it is\n",
+  fmt::print(stderr, "{}: error: cannot be formatted without a change of meaning; unchanged\n",
              name);
   exit_code = kMachineFailed;
   return std::nullopt;
@@ -65,7 +65,8 @@ int format_file(const std::string& file, const FmtOptions& options) {
 
 void add_fmt_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<FmtOptions>();
-  CLI::App* command = app.add_subcommand("fmt", "Lays YAML files out canonically; comments stay");
+  CLI::App* command =
+      app.add_subcommand("fmt", "Formats YAML files in the canonical layout; keeps comments");
   command->add_option("FILE", options->files, "YAML files, - for stdin to stdout")->required();
   auto* check = command->add_flag("--check", options->check,
                                   "Writes nothing; exit 1 and their names if files would change");

@@ -99,7 +99,7 @@ std::string derived_text(const NewOptions& options, const fs::path& path) {
   std::string text = fmt::format("base: {}\n", base_as_written(options, path));
   if (!options.robot.empty()) text += fmt::format("robot: {}\n", options.robot);
   text +=
-      "# What differs from the base goes here: maps merge by key, all else is replaced whole,\n"
+      "# What differs from the base goes here: maps merge by key, everything else is replaced,\n"
       "# `NAME: off` removes, `KEY+:` appends to a list. `footfall config` on this file shows the "
       "result.\n";
   const core::YamlNode* parameters = base.find("parameters");
@@ -178,8 +178,8 @@ int make(const NewOptions& options) {
 
 void add_new_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<NewOptions>();
-  CLI::App* command =
-      app.add_subcommand("new", "Writes a small behavior or robot that runs; never over a file");
+  CLI::App* command = app.add_subcommand(
+      "new", "Creates a small behavior or robot that runs; never replaces a file");
   command->add_option("KIND", options->kind, "behavior or robot")
       ->required()
       ->check(CLI::IsMember({"behavior", "robot"}));
@@ -195,7 +195,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
       ->add_option("--base", options->base,
                    "behavior: a behavior's file or name to derive from, by `base:`")
       ->excludes(from);
-  command->add_option("--robot", options->robot, "behavior: the robot it is for, instead of hume");
+  command->add_option("--robot", options->robot, "behavior: its robot (default hume)");
   command->footer(
       "Example: footfall new behavior my_squat\nExample: footfall new behavior my_walk --base "
       "balance_best\nExample: footfall new robot my_biped");

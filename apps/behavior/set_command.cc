@@ -86,7 +86,7 @@ int set_values(const SetOptions& options) {
 void add_set_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SetOptions>();
   CLI::App* command = app.add_subcommand(
-      "set", "Writes values of parameters and gains into a behavior's file; all else stays");
+      "set", "Writes values of parameters and gains to a behavior's file; the rest is unchanged");
   command->add_option("FILE", options->file, "Behavior file, or its name in the library")
       ->required();
   command
@@ -94,8 +94,8 @@ void add_set_command(CLI::App& app, int& exit_code) {
                    "Parameters and gains, values as in YAML: lift_time=160ms, goal.x=1m")
       ->required();
   command->add_option("--to", options->to,
-                      "A file on top of FILE, new or not, that takes the values instead");
-  command->add_option("--robot", options->robot, "Another robot than the file's");
+                      "Writes to this overlay, a new or existing file with FILE as base");
+  command->add_option("--robot", options->robot, "Robot, instead of the file's");
   auto* dry = command->add_flag("--dry-run", options->dry_run, "Shows the diff, writes nothing");
   command->add_flag("--yes", options->yes, "Writes without asking")->excludes(dry);
   command->footer("Example: footfall set balance lift_time=160ms --to my_balance.yaml");

@@ -85,7 +85,7 @@ void add_signals_command(CLI::App& app, int& exit_code) {
       "signals", "Lists every signal of a behavior, its parameters and gains, with units");
   command->add_option("BEHAVIOR", options->file, "Behavior file or name")->required();
   command->add_option("FILTER", options->filter,
-                      "Only names that hold this, or match it with * and ?");
+                      "Only names that contain this, or match it with * and ?");
   command->footer("Example: footfall signals balance \"gains.*.kp\"");
   command->callback([options, &exit_code] { exit_code = list(options->file, options->filter); });
 }

@@ -77,7 +77,7 @@ void print_events(const EventsOptions& options) {
 void add_events_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EventsOptions>();
   CLI::App* command = app.add_subcommand(
-      "events", "Lists what happened in a run: transitions, marks, steps, texts, faults");
+      "events", "Lists the events of a run: transitions, marks, steps, texts, faults");
   command->add_option("LOG", options->log, "log.mcap, or the folder it is in")->required();
   command
       ->add_option(

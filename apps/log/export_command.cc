@@ -118,10 +118,10 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("--signals", arguments->signals, "Names or globs, e.g. \"com.pos.*\"")
       ->delimiter(',');
   command->add_flag("--events", arguments->events, "Events instead of signals");
-  command->add_flag("--all", arguments->all, "Every row there is, not only the evenly spaced ones");
+  command->add_flag("--all", arguments->all, "All rows, not only the evenly spaced ones");
   command->add_option("--from", arguments->from, "Begins at this time, e.g. 2s");
   command->add_option("--to", arguments->to, "Ends at this time");
-  command->add_option("-o,--output", arguments->out, "This file instead of stdout");
+  command->add_option("-o,--output", arguments->out, "Output file, instead of stdout");
   command->footer(
       "Example: footfall export out/run --csv --signals \"com.pos.*\" --from 2s --to 3s");
   command->callback(

@@ -49,7 +49,7 @@ lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
   if (arguments.from.empty() && arguments.to.empty()) return log;
   lab::Log part = lab::log_window(log, from, to);
   if (part.rows() == 0) {
-    throw std::runtime_error("--from, --to: '" + log.path + "' has nothing between these times");
+    throw std::runtime_error("--from, --to: '" + log.path + "' has no rows between these times");
   }
   return part;
 }
@@ -168,7 +168,8 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
 void add_report_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = app.add_subcommand(
-      "report", "One self-contained HTML page from the log of a run, or of several side by side");
+      "report",
+      "Writes one self-contained HTML page from the log of a run, or of several side by side");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   command->add_option("OTHER", arguments->more, "further logs, compared with the first");
   command->add_option("-o,--output", arguments->out,

@@ -50,14 +50,15 @@ void add_live_options(CLI::App& command, LiveOptions& o) {
       command
           .add_option("--lcm-key", o.key,
                       "File with the key that edits need (footfall tune key FILE makes one); "
-                      "without it, the user's own")
+                      "default: the user's own key")
           ->needs(lcm);
   command
-      .add_flag("--lcm-open", o.open, "Edits need no key: everybody in reach may change the run")
+      .add_flag("--lcm-open", o.open,
+                "Accepts edits without a key: everybody on the network may change the run")
       ->needs(lcm)
       ->excludes(key);
   o.prefix = engine::kLivePrefix;
-  command.add_option("--lcm-prefix", o.prefix, "First part of the channels' names")
+  command.add_option("--lcm-prefix", o.prefix, "Prefix of the channel names")
       ->needs(lcm)
       ->capture_default_str();
   command

@@ -172,7 +172,7 @@ int run(const SweepCommandOptions& options, const Loaded& loaded, const std::str
   lab::SweepStore store(lab::store_path(out, options.shard, options.shards));
   const lab::SweepIdentity identity = identity_of(options, prepared);
   if (!store.empty() && store.identity().program != identity.program) {
-    std::fputs("warning: the runs so far were made by another build of footfall\n", stderr);
+    std::fputs("warning: earlier runs were made by another build of footfall\n", stderr);
   }
   store.begin(prepared.sweep, identity,
               lab::shard_ids(identity.runs, options.shard, options.shards), options.extend);
@@ -191,7 +191,7 @@ int run(const SweepCommandOptions& options, const Loaded& loaded, const std::str
   const lab::SweepProgress progress = lab::run_sweep(prepared.sweep, store, settings);
   if (terminal) std::fputs("\r\033[K", stderr);
   fmt::print("{} in {}{}\n", progress_text(progress), clock_text(progress.elapsed),
-             progress.done < progress.to_do ? ": stopped; the same command goes on" : "");
+             progress.done < progress.to_do ? ": stopped; repeat the command to continue" : "");
   fmt::print("  results      {}\n", lab::store_path(out, options.shard, options.shards));
   const lab::SweepTable table = store.read();
   if (!options.no_report && options.shards == 1) write_report(out, table);

@@ -305,18 +305,20 @@ void add_options(CLI::App& command, TestOptions& o) {
   command.add_option(
       "SCENARIO", o.paths,
       "Scenario files, or folders of them (default: tests/runs/regression and behaviors)");
-  command.add_option("-j,--jobs", o.jobs, "Runs at once (default: one for each processor)")
+  command
+      .add_option("-j,--jobs", o.jobs, "Number of parallel runs (default: one for each processor)")
       ->check(CLI::PositiveNumber);
   command.add_option("--filter", o.filter,
                      "Only scenarios whose name or path matches, e.g. 'push*'");
   command.add_option("--label,--labels", o.labels, "Only scenarios with one of these labels");
   command.add_flag("--quick", o.quick, "Only scenarios with the label `quick`");
-  command.add_option("--shard", o.shard, "I/N: the I-th of N parts of about equal length");
+  command.add_option("--shard", o.shard, "I/N: the I-th of N shards of about equal duration");
   command.add_option("--seeds", o.seeds, "A..B: these seeds instead of the scenarios' own");
   command.add_option(
       "--timeout", o.timeout,
-      "Wall time of one run, e.g. 60s (default: 60 s and 3 s for each second of it)");
-  command.add_flag("--rerun-failed", o.rerun_failed, "What failed in the last session of --out");
+      "Limit of wall time of one run, e.g. 60s (default: 60 s and 3 s for each second of it)");
+  command.add_flag("--rerun-failed", o.rerun_failed,
+                   "Only scenarios that failed in the last session of --out");
   command.add_option("--out", o.out, "Folder for logs of failures and the session's state")
       ->capture_default_str();
   command.add_flag("--bless", o.bless,
@@ -329,7 +331,8 @@ void add_options(CLI::App& command, TestOptions& o) {
   command.add_option(
       "--coverage", o.coverage,
       "Lists states, transitions and conditions that no run reached; writes them as JSON");
-  command.add_option("--program", o.program, "The footfall that runs them (default: this one)");
+  command.add_option("--program", o.program,
+                     "Path of the footfall program for the runs (default: this one)");
   command.footer("Example: footfall test --quick -j 2 --junit out/junit.xml");
 }
 
