@@ -131,7 +131,7 @@ Section forces(const Overlay& overlay) {
 }
 
 Section path(const std::vector<ComparedRun>& runs) {
-  Section section{"path", "Path from above", "Rings: where feet came down.", "", {}, {}};
+  Section section{"path", "Path from above", "Rings: touchdowns.", "", {}, {}};
   PlanePlot plot{"path-top", "Centre of mass and footsteps", "x, m", "y, m", {}, true, 0.1};
   for (std::size_t k = 0; k < runs.size(); ++k) {
     const Log& log = *runs[k].log;
@@ -211,9 +211,9 @@ std::string table_of_moments(const std::string& name, const std::string& head,
 
 Section parting(const std::vector<ComparedRun>& runs) {
   Section section{"parting",
-                  "Where they part",
-                  "The first difference of each kind from A, in the order of their times, causes "
-                  "first. A row moves all plots there.",
+                  "First differences",
+                  "The first difference of each kind from A, ordered by time, causes "
+                  "first. A row moves all plots to its time.",
                   "",
                   {},
                   {}};

@@ -106,7 +106,7 @@ TimePlot use_plot(const Log& log, const std::vector<std::string>& feet, double f
 Section force_section(const Log& log) {
   Section section{"forces",
                   "Contact and internal forces",
-                  "Of the ground on the robot, z up; dashed: as the control law predicts it. The "
+                  "Ground on robot, z up; dashed: predicted by the control law. The "
                   "cones take up for the normal.",
                   "",
                   {},

@@ -123,8 +123,8 @@ std::vector<PlotMark> run_marks(const Log& log) {
 Section mark_section(const Log& log) {
   Section section{"marks",
                   "Edits, pushes and faults",
-                  "What reached the run from outside, with the values before, and what went wrong. "
-                  "Every plot has a line there; a row moves all plots to it.",
+                  "External inputs with the previous values, and faults. "
+                  "Each has a line in every plot; its row moves all plots to it.",
                   "",
                   {},
                   {}};

@@ -100,7 +100,7 @@ std::string step_slider(const std::vector<StepFact>& facts) {
 Section path_section(const Log& log) {
   Section section{"path",
                   "Path from above",
-                  "The centre of mass and the footsteps, with what the planner expected.",
+                  "Centre of mass and footsteps, with the planner's predictions.",
                   "",
                   {},
                   {}};

@@ -54,7 +54,7 @@ Section state_section(const ReportOptions& options) {
   Section section{"states", "State diagram", "", "", {}, {}};
   if (!options.diagram_svg.empty()) {
     section.lead =
-        "Time spent in each state, its share, and how often it was entered; the darker, the "
+        "Time spent in each state, its share, and the number of entries; the darker, the "
         "longer.";
     const std::size_t svg = std::min(options.diagram_svg.find("<svg"), options.diagram_svg.size());
     section.html =

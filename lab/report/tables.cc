@@ -70,8 +70,8 @@ std::string outcome_card(const Log& log, const json& summary) {
   const std::string why = text_at(cause, "text");
   if (fell || end == "fall") return card("outcome", "fell", why, "bad");
   if (end == "fault") return card("outcome", "stopped by a fault", why, "bad");
-  if (!log.complete) return card("outcome", "cut off", "the log has no proper end", "warn");
-  if (end == "stopped") return card("outcome", "ended by the behavior or by hand", "", "warn");
+  if (!log.complete) return card("outcome", "cut off", "the log is incomplete", "warn");
+  if (end == "stopped") return card("outcome", "ended by the behavior or by the user", "", "warn");
   return card("outcome", "no fall", end.empty() ? "" : "end: " + end, "good");
 }
 
@@ -268,7 +268,7 @@ Section event_section(const Log& log) {
 }
 
 Section timing_section(const std::string& timing_text) {
-  Section section{"timing", "Timing", "What a wall clock measured; it differs from run to run.",
+  Section section{"timing", "Timing", "Wall-clock measurements; they differ between runs.",
                   "",       {},       {}};
   const json timing = json::parse(timing_text, nullptr, false);
   if (!timing.is_object()) return section;

@@ -221,7 +221,7 @@ bool expect_one_of(ScenarioContext& context, const YamlNode& map,
     if (std::ranges::find(keys, entry.key) == keys.end()) continue;
     if (!first.empty()) {
       context.error(entry.key_mark, "misplaced-key",
-                    fmt::format("'{}' beside '{}': one of them is meant", entry.key, first));
+                    fmt::format("'{}' beside '{}': only one is allowed", entry.key, first));
       return false;
     }
     first = entry.key;

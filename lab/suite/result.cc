@@ -72,7 +72,7 @@ std::string misfit(const Parsed& object, const SuiteScenario& scenario, const Su
   if (seed != object.end() && *seed != run.seed) return "its result is of another seed";
   const auto list = object.find("expectations");
   if (list == object.end() || !list->is_array() || list->size() != scenario.expectations.size()) {
-    return fmt::format("its result does not speak of the {} expectations",
+    return fmt::format("its result does not contain the {} expectations",
                        scenario.expectations.size());
   }
   return "";
@@ -86,7 +86,7 @@ void read_object(const Parsed& object, int exit_code, SuiteRun& run) {
     if (!observation) {
       run.observations.clear();
       run.verdict = Verdict::bad_output;
-      run.why = "an expectation in its result cannot be read";
+      run.why = "an expectation in its result is malformed";
       return;
     }
     all = all && observation->passed;
@@ -96,7 +96,7 @@ void read_object(const Parsed& object, int exit_code, SuiteRun& run) {
   run.verdict = passed ? Verdict::passed : Verdict::failed;
   if (passed && exit_code != 0) {
     run.verdict = Verdict::bad_output;
-    run.why = fmt::format("it says that it passed, with exit code {}", exit_code);
+    run.why = fmt::format("its result is `passed`, its exit code {}", exit_code);
   } else if (!passed && all) {
     const std::string why = text_of(object, "why");
     run.why = !why.empty() ? why : "the run ended by " + (run.end.empty() ? "failing" : run.end);

@@ -75,11 +75,12 @@ std::string again(const Suite& suite, const SuiteRun& run) {
 }
 
 std::string broken_text(const Suite& suite, const SuiteRun& run) {
-  std::string text = fmt::format("    expected  {} (seed {})\n",
-                                 run.verdict == Verdict::failed
-                                     ? "a good end, along the golden trace if there is one"
-                                     : "a run to its end",
-                                 run.seed);
+  std::string text =
+      fmt::format("    expected  {} (seed {})\n",
+                  run.verdict == Verdict::failed
+                      ? "a normal end, within the tolerances of the golden trace if there is one"
+                      : "a run to its end",
+                  run.seed);
   text += fmt::format("    happened  {}: {}\n", verdict_name(run.verdict), run.why);
   if (!run.error_tail.empty()) text += indented(run.error_tail);
   return text + again(suite, run);

@@ -72,7 +72,7 @@ void read_what(SweepReader& reader, const YamlNode& root) {
                              "one of the keys 'behavior', 'scenario' is missing");
   } else if (behavior != nullptr && scenario != nullptr) {
     reader.diagnostics.error(scenario->mark, "misplaced-key",
-                             "'scenario' beside 'behavior': one of them is meant");
+                             "'scenario' beside 'behavior': only one is allowed");
   }
   read_target(reader, root, "behavior", reader.sweep.behavior);
   read_target(reader, root, "scenario", reader.sweep.scenario);

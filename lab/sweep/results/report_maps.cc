@@ -136,8 +136,8 @@ PlanePlot sensitivity_plot(const SweepFactor& factor, const std::string& figure,
 Section sweep_share_section(const SweepTable& table, const std::vector<SweepFactor>& factors) {
   Section section{"shares",
                   "Success by value",
-                  "The part of runs that passed with each value, over all values of the others; "
-                  "the bar is the 95 % interval. Medians are of runs that passed.",
+                  "Fraction of passed runs for each value, over all values of the others; "
+                  "the bar is the 95 % interval. Medians are over passed runs.",
                   "",
                   {},
                   {}};
@@ -173,8 +173,8 @@ Section sweep_share_section(const SweepTable& table, const std::vector<SweepFact
 Section sweep_map_section(const SweepTable& table, const std::vector<SweepFactor>& factors) {
   Section section{"maps",
                   "Success maps",
-                  "The part of runs that passed with both values, over all else; n is how many "
-                  "runs that is of. Point at a cell for its interval.",
+                  "Fraction of passed runs for both values, over all else; n is the number of "
+                  "runs. Point at a cell for its interval.",
                   "",
                   {},
                   {}};
@@ -198,8 +198,8 @@ Section sweep_sensitivity_section(const SweepTable& table,
                                   const std::vector<SweepFactor>& factors) {
   Section section{"sensitivity",
                   "Sensitivity",
-                  "Figures of merit against each parameter, over all else, of runs that passed. "
-                  "Rank correlation (Spearman): 1 rises always, -1 falls always, 0 neither.",
+                  "Figures of merit against each parameter, over all else, for passed runs. "
+                  "Rank correlation (Spearman): 1 always increasing, -1 always decreasing.",
                   "",
                   {},
                   {}};
