@@ -1,4 +1,4 @@
-// Whether changed files load to what was asked for, and to nothing else; see parts.h.
+// Verifies that changed files load to exactly the requested values; see parts.h.
 #include "behaviors/check/physics/check.h"
 
 #include <fmt/format.h>
