@@ -1,4 +1,4 @@
-// The `footfall` command: one small file a sub-command.
+// The `footfall` command; each sub-command has its own file.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>

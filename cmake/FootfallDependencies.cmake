@@ -1,5 +1,5 @@
-# Every library that the build looks for, in one place. tools/dependencies.txt has the Debian packages;
-# footfallConfig.cmake.in names again what the installed libraries need.
+# All libraries of the build. tools/dependencies.txt lists their Debian packages; footfallConfig.cmake.in repeats those
+# that the installed libraries need.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
@@ -18,10 +18,10 @@ find_package(CLI11 REQUIRED)                  # CLI11::CLI11
 include(FootfallZstd)                         # footfall_zstd
 include(FootfallLua)                          # footfall_lua
 include(FootfallLcm)                          # footfall_lcm, footfall_sodium
-find_program(LCM_GEN lcm-gen REQUIRED)        # makes engine/lcm/messages/*.lcm into headers
+find_program(LCM_GEN lcm-gen REQUIRED)        # generates headers from engine/lcm/messages/*.lcm
 set(CURSES_NEED_WIDE TRUE)
 find_package(Curses REQUIRED)                 # CURSES_LIBRARIES, CURSES_INCLUDE_DIRS
 
 find_library(EGL_LIBRARY EGL REQUIRED)
 find_path(STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)
-find_program(NPM_PROGRAM npm)                 # optional: the report's plots; without it, SVG
+find_program(NPM_PROGRAM npm)                 # optional: without it the report's plots are SVG

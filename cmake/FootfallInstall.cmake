@@ -1,4 +1,4 @@
-# `cmake --install` and an exported package: find_package(footfall) gives footfall::engine and the rest.
+# `cmake --install` and an exported package: find_package(footfall) defines footfall::engine and the other libraries.
 include(CMakePackageConfigHelpers)
 get_property(libraries GLOBAL PROPERTY FOOTFALL_LIBRARIES)
 install(TARGETS ${libraries} EXPORT footfallTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

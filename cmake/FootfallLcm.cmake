@@ -1,5 +1,5 @@
-# Debian's LCM and libsodium have no CMake packages: the targets footfall_lcm and footfall_sodium, for the build and for
-# find_package(footfall).
+# Debian's LCM and libsodium have no CMake packages: defines the targets footfall_lcm and footfall_sodium, for the build
+# and for find_package(footfall).
 if(NOT TARGET footfall_lcm)
   find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp REQUIRED)
   find_library(LCM_LIBRARY lcm REQUIRED)

@@ -1,16 +1,16 @@
-# One library a folder, one place for warnings and sanitizers.
+# Functions for libraries (one a folder), warnings and sanitizers.
 
 # Warnings for our own code only (never global, never exported).
 function(footfall_set_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # g++ 12 reports std::string operator+ falsely (GCC bug 105651)
-    # Files compiled together: a hidden class with a member of an unnamed namespace is one file's own all the same.
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # false positive of g++ 12 for std::string operator+ (GCC bug 105651)
+    # Unity builds: a hidden class with a member of an unnamed namespace still belongs to one file only.
     $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
     $<$<BOOL:${FOOTFALL_WERROR}>:-Werror>)
 endfunction()
 
-# AddressSanitizer or UndefinedBehaviorSanitizer, as FOOTFALL_SANITIZE says; for fuzzing both, and coverage.
+# AddressSanitizer or UndefinedBehaviorSanitizer according to FOOTFALL_SANITIZE; for fuzzing both, and coverage.
 function(footfall_set_sanitizers target)
   if(FOOTFALL_SANITIZE)
     set(kinds ${FOOTFALL_SANITIZE})

@@ -1,4 +1,4 @@
-# Debian's zstd has no CMake package: the target footfall_zstd, for the build and for find_package(footfall).
+# Debian's zstd has no CMake package: defines the target footfall_zstd, for the build and for find_package(footfall).
 if(NOT TARGET footfall_zstd)
   find_path(ZSTD_INCLUDE_DIR zstd.h REQUIRED)
   find_library(ZSTD_LIBRARY zstd REQUIRED)

@@ -1,4 +1,4 @@
-// What can go wrong at run time, and what is done about it.
+// Run-time faults and the reactions to them.
 #pragma once
 
 #include <array>
@@ -9,26 +9,26 @@ namespace footfall::core {
 
 // Run-time faults; their dotted names are used in robot files, logs and as events `fault.NAME`.
 enum class Fault : std::uint8_t {
-  fall,               // torso too low, tilted too far, or a body but a foot touches
-  non_finite,         // a state or torque that is not a number
-  torque_limit,       // a commanded torque beyond the joint's limit (clamped)
-  torque_step,        // a torque step beyond the robot's bound between neighbouring ticks
-  joint_limit,        // a joint beyond its position limits
-  swing_too_long,     // a foot in the air for more than 1 s while stepping
-  simulator_warning,  // MuJoCo's warnings, a reset, a bad value
+  fall,               // torso too low or tilted too far, or a body other than a foot touches
+  non_finite,         // a state or torque is NaN or infinite
+  torque_limit,       // a commanded torque exceeds the joint's limit (clamped)
+  torque_step,        // a torque changes between two ticks by more than the robot's limit
+  joint_limit,        // a joint exceeds its position limits
+  swing_too_long,     // a foot is in the air for more than 1 s while stepping
+  simulator_warning,  // a MuJoCo warning, reset or bad value
   sensor_stale,       // no new sensor data
   imu_stale,          // no new IMU data
   mocap_stale,        // no new motion capture data
   tick_overrun,       // the tick missed its deadline
-  planner_late,       // a plan came after its deadline
+  planner_late,       // a plan arrived after its deadline
   execution,          // error.execution of the statechart
-  event_overflow,     // an event queue was full
+  event_overflow,     // an event queue is full
   rank_loss,          // a task level lost rank that it has at load
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
 
-// The robot file's reaction to a fault.
+// The reaction to a fault, configured in the robot file.
 enum class Reaction : std::uint8_t { keep_going, safe_state, safe_stop };
 
 // Dotted name, e.g. "torque.limit".
@@ -40,7 +40,7 @@ constexpr std::string_view fault_name(Fault fault) {
   return names[static_cast<std::size_t>(fault)];
 }
 
-// Counters of one run.
+// Fault counters of one run.
 struct FaultCounters {
   std::array<std::int64_t, kFaultCount> count{};
   void add(Fault fault) noexcept { ++count[static_cast<std::size_t>(fault)]; }

@@ -1,4 +1,4 @@
-// Capacities of the plain arrays that cross module borders inside a tick.
+// Capacities of the fixed-size arrays that modules exchange inside a tick.
 #pragma once
 
 namespace footfall::core {

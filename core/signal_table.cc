@@ -1,4 +1,4 @@
-// Registry of named numbers; see signal_table.h.
+// Registry of signals; see signal_table.h.
 #include "core/signal_table.h"
 
 #include <utility>

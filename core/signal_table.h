@@ -1,5 +1,5 @@
-// Every named number of a run in one flat array: what expressions read, what the log writes, what
-// the report plots. Names are registered at load; the tick only writes values by index.
+// All signals (named numbers) of a run in one flat array, read by expressions, the log and the
+// report. Names are registered at load; the tick only writes values by index.
 #pragma once
 
 #include <string>
@@ -21,9 +21,9 @@ struct SignalInfo {
 // Registry (load time) and values (tick) of all signals.
 class SignalTable {
  public:
-  // Registers a signal and returns its index. A name registered twice returns the first index.
+  // Registers a signal and returns its index. Registering a name again returns its first index.
   int add(std::string name, Dimension dimension, std::string doc);
-  // Index of a name, -1 if there is none.
+  // Index of a name, -1 if absent.
   int find(std::string_view name) const;
   int size() const { return static_cast<int>(infos_.size()); }
   const SignalInfo& info(int index) const { return infos_[static_cast<std::size_t>(index)]; }

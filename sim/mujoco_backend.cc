@@ -83,7 +83,7 @@ MujocoBackend::~MujocoBackend() {
   mj_deleteModel(model_);
 }
 
-// Nominal posture, upright, at rest, the lowest foot point touching the ground.
+// Sets the nominal posture: upright, at rest, the lowest foot point touching the ground.
 void MujocoBackend::place_at_posture() {
   mj_resetData(model_, data_);
   for (std::size_t j = 0; j < qpos_.size(); ++j) data_->qpos[qpos_[j]] = robot_.joints[j].posture;
@@ -94,7 +94,7 @@ void MujocoBackend::place_at_posture() {
     lowest = std::min(lowest, data_->site_xpos[3 * site + 2] - c.radius);
   }
   if (!robot_.contacts.empty()) data_->qpos[2] -= lowest;
-  // Nobody lets go of a robot at rest to the last digit: the seed decides how it starts.
+  // No robot is released perfectly at rest: draw a small initial velocity.
   std::mt19937_64 random(seed_);
   std::normal_distribution<double> velocity(0.0, 1.0);
   for (int k = 0; k < 2; ++k) data_->qvel[k] = world_.start_velocity * velocity(random);
@@ -110,7 +110,7 @@ void MujocoBackend::start() {
   tick_ = 0;
   stopped_ = false;
   warnings_at_start_ = warnings();
-  // From here an error inside MuJoCo must not unwind through the tick.
+  // From here on an error inside MuJoCo must not unwind through the tick.
   core::set_mujoco_running(true, nullptr);
 }
 
@@ -140,7 +140,7 @@ bool MujocoBackend::read(hal::Sensors& s) noexcept {
   return true;
 }
 
-// Contacts of the last physics step: forces on the feet, and whether anything else touched.
+// Contacts of the last physics step: forces on the feet, and contact of any other body.
 void MujocoBackend::sense_contacts(hal::Sensors& s) noexcept {
   s.contact.fill(false);
   for (auto& f : s.force) f = {};
@@ -172,7 +172,7 @@ void MujocoBackend::write(const hal::Commands& commands) noexcept {
       slot[j] = std::clamp(commands.tau[j], -torque_limit_[j], torque_limit_[j]);
     }
     delay_head_ = (delay_head_ + 1) % delay_line_.size();
-    const std::vector<double>& now = delay_line_[delay_head_];  // the oldest: written `delay` ago
+    const std::vector<double>& now = delay_line_[delay_head_];  // oldest: written `delay` ago
     for (std::size_t j = 0; j < now.size(); ++j)
       data_->ctrl[actuator_[j]] = stopped_ ? 0.0 : now[j];
     apply_forces();

@@ -1,5 +1,5 @@
-// MuJoCo as a robot: steps physics in lock-step with the tick, reports sensors and what went wrong.
-// Its model and data are its own; the controller never sees them.
+// MuJoCo as a robot: steps physics in lock-step with the tick, reports sensors and simulator
+// faults. Its model and data are private; the controller never sees them.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ struct ActivePush {
   std::array<double, 3> force{};  // N, world
   int steps_left = 0;             // physics steps
 };
-inline constexpr std::size_t kMaxPushes = 32;  // at once
+inline constexpr std::size_t kMaxPushes = 32;  // maximum number of simultaneous pushes
 
-// A body that people hold where it was: a stiff, well damped spring at its centre of mass, and at
-// the floating base one in its orientation, too.
+// A body held in place by a stiff, well damped spring at its centre of mass; the floating base is
+// held in orientation, too.
 struct HeldBody {
   int body = 0;
   std::array<double, 3> position{};     // m, world
@@ -34,7 +34,7 @@ struct HeldBody {
 };
 inline constexpr std::size_t kMaxHeld = 8;
 
-// The facts of the compiled physics that every figure rests on; printed with a run's summary.
+// Properties of the compiled physics that all results depend on; printed in a run's summary.
 struct PhysicsFacts {
   double timestep = 0.0;         // s
   double friction = 0.0;         // of the ground
@@ -62,20 +62,20 @@ class MujocoBackend final : public hal::Hardware {
   void write(const hal::Commands& commands) noexcept override;
   void safe_stop() noexcept override;
 
-  // Begins a push on a body's CoM; direction in rad from the robot's heading, 0 forward, 90° left.
-  // Names were checked by find_body(). At most kMaxPushes at once; false if there are more.
+  // Starts a push on a body's CoM; direction in rad from the robot's heading, 0 forward, pi/2 left.
+  // Names were checked by find_body(). False if kMaxPushes are active.
   bool push(int body, double force, double direction, double duration) noexcept;
-  // Holds a body where it is, or lets go of it; false if too many are held.
+  // Holds a body in place, or releases it; false if too many are held.
   bool hold(int body, bool on) noexcept;
-  int find_body(const std::string& name) const;  // -1: none
+  int find_body(const std::string& name) const;  // -1 if absent
   PhysicsFacts facts() const;
 
   mjModel_* model() noexcept { return model_; }
   mjData_* data() noexcept { return data_; }
 
  private:
-  // Nothing compiled yet; the public constructor goes on from here, so that what it has compiled is
-  // freed if it throws.
+  // Target of the public constructor's delegation: once it has run, the destructor frees compiled
+  // objects even if the public constructor throws.
   struct Empty {};
   MujocoBackend(Empty, const model::RobotDescription& robot, const WorldDescription& world,
                 std::uint64_t seed);
@@ -93,7 +93,7 @@ class MujocoBackend final : public hal::Hardware {
   std::vector<int> qpos_, dof_, actuator_;  // by joint of the robot file
   std::vector<int> contact_of_geom_;        // robot contact index, -1: ground, -2: another body
   std::vector<double> torque_limit_;
-  std::vector<std::vector<double>> delay_line_;  // commands on their way, one a physics step
+  std::vector<std::vector<double>> delay_line_;  // delay line, one entry a physics step
   std::size_t delay_head_ = 0;
   std::array<ActivePush, kMaxPushes> pushes_{};
   std::array<HeldBody, kMaxHeld> held_{};

@@ -1,4 +1,4 @@
-// What acts on the robot from outside of its actuators: pushes, and people who hold it.
+// External forces on the robot: pushes and held bodies.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ void MujocoBackend::apply_forces() noexcept {
   for (const HeldBody& h : held_) {
     if (h.body != 0) std::fill_n(data_->xfrc_applied + 6 * h.body, 6, 0.0);
   }
-  // What overlaps on one body adds up.
+  // Pushes on one body add up.
   for (ActivePush& p : pushes_) {
     if (p.body == 0) continue;
     double* force = data_->xfrc_applied + 6 * p.body;
@@ -46,7 +46,7 @@ void MujocoBackend::apply_hold(const HeldBody& held) noexcept {
   std::array<double, 3> angle{};
   mju_quat2Vel(angle.data(), turn.data(), 1.0);
   const int dof = model_->body_dofadr[root] + 3;
-  double inertia = 1e9;  // the least of the three: stable about all
+  double inertia = 1e9;  // the smallest of the three: stable about all axes
   for (int k = 0; k < 3; ++k) inertia = std::min(inertia, data_->qM[model_->dof_Madr[dof + k]]);
   for (std::size_t k = 0; k < 3; ++k) {
     force[3 + k] += inertia * (w * w * angle[k] - 2.0 * w * velocity[k]);

@@ -30,7 +30,7 @@ const char* solver_name(Solver s) {
   return "Newton";
 }
 
-// The ground decides about friction: with equal priority MuJoCo takes the larger of a pair's.
+// The ground's friction must apply: with equal priority MuJoCo takes the larger one of a pair.
 std::string contact_attributes(const WorldDescription& world) {
   const PhysicsSettings& p = world.physics;
   return fmt::format(

@@ -8,8 +8,8 @@
 
 namespace footfall::sim {
 
-// A whole MJCF document for physics: shapes that are only seen are left out, they would cost two
-// thirds of a step.
+// A complete MJCF document for physics, without visual-only shapes, which would cost two thirds of
+// a step.
 std::string scene_xml(const model::RobotDescription& robot, const WorldDescription& world);
 
 }  // namespace footfall::sim

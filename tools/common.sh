@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# What the tools share: the project's root as working directory, one parser for their flags, and stages with their time.
+# Shared by the tools: the project's root as working directory, help and error texts, and stages with their time.
 # Sourced by tools/demo, tools/test and tools/check; does nothing on its own.
 
 set -euo pipefail
@@ -15,12 +15,12 @@ die() {  # die CODE TEXT...
   exit "$code"
 }
 
-# The tool's own head comment is its help text.
+# Prints the tool's head comment as its help text.
 usage() { sed -n '2,/^$/ s/^# \{0,1\}//p' "$0"; }
 
 stage_names=() stage_times=() stage_results=()
 
-# stage NAME COMMAND...: runs it, records how long it took and whether it worked, returns its exit code.
+# stage NAME COMMAND...: runs the command, records its duration and success, returns its exit code.
 stage() {
   local name=$1 begin=$SECONDS code=0
   shift
@@ -40,7 +40,7 @@ print_stages() {
   printf '%-28s %8d\n' total "$SECONDS"
 }
 
-# configure PRESET: configures quietly; the whole output appears only when it failed.
+# configure PRESET: configures quietly; prints the output only on failure.
 configure() {
   mkdir -p out
   if ! cmake --preset "$1" >"out/configure-$1.log" 2>&1 </dev/null; then

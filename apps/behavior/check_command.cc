@@ -1,4 +1,4 @@
-// `footfall check`: everything that can be known before a motor moves.
+// `footfall check`: all checks that are possible before a motor moves.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -42,7 +42,7 @@ void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
 void check_world(const std::string& path, core::Diagnostics& diagnostics) {
   const sim::WorldDescription world = sim::load_world(path, diagnostics);
   if (diagnostics.has_errors()) return;
-  core::Diagnostics refused;  // by `run`: the file is right all the same
+  core::Diagnostics refused;  // only refused by `run`: the file itself is correct
   sim::check_supported(world, refused);
   for (core::Diagnostic item : refused.all()) {
     item.text += "; runs refuse this world";
@@ -50,7 +50,7 @@ void check_world(const std::string& path, core::Diagnostics& diagnostics) {
   }
 }
 
-// With a robot: what it asks of its physics.
+// With a robot: checks what the behavior demands of its physics.
 void check_loaded(const std::unique_ptr<behaviors::Behavior>& behavior,
                   core::Diagnostics& diagnostics) {
   if (!behavior || !behavior->has_robot) return;
@@ -71,7 +71,7 @@ void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
   check_loaded(behaviors::load_behavior(path, load_options(), diagnostics), diagnostics);
 }
 
-// The world that a scenario names: a file beside it, or one that is found by name.
+// Checks the world that a scenario names: a file beside it, or one found by name.
 void check_world_of(const lab::ScenarioDescription& scenario, core::Diagnostics& diagnostics) {
   if (scenario.world.empty()) return;
   const std::filesystem::path folder = std::filesystem::path(scenario.path).parent_path();
@@ -92,7 +92,7 @@ void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
   check_world_of(lab::load_scenario(path, {search_path()}, diagnostics), diagnostics);
 }
 
-// Kinds of files by their first key. A file of no kind is taken for a behavior, which says so.
+// File kinds by their first key. A file without a kind is checked as a behavior, which reports it.
 struct Kind {
   const char* key;
   void (*check)(const std::string& path, core::Diagnostics& diagnostics);
@@ -161,7 +161,7 @@ int check(const CheckOptions& options) {
   }
   if (options.json) {
     const nlohmann::ordered_json out = {{"files", std::move(results)}};
-    // Bytes of a file that are no UTF-8 are shown as such, not an exception.
+    // Invalid UTF-8 in a file is replaced instead of raising an exception.
     fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (options.files.size() > 1 || errors + warnings > 0) {
     fmt::print("{} checked: {}, {}\n", counted(static_cast<int>(options.files.size()), "file"),
@@ -183,9 +183,8 @@ void add_check_command(CLI::App& app, int& exit_code) {
       ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
   command->add_flag("--json", options->json, "One JSON object with every problem");
-  command->add_option(
-      "--stdin-name", options->stdin_name,
-      "What stands for the file of - in messages; `base:` and `robot:` are sought beside it");
+  command->add_option("--stdin-name", options->stdin_name,
+                      "File name for - in messages; `base:` and `robot:` are searched beside it");
   command->footer(
       "Exit codes: 0 clean, 1 warnings with --strict, 2 errors.\n"
       "Example: footfall check --strict behaviors/library/balance.yaml robots/hume/robot.yaml");

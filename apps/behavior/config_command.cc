@@ -1,4 +1,4 @@
-// `footfall config`: the file as it is in force, and where its values come from.
+// `footfall config`: the effective content of a file, and the origin of its values.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -24,7 +24,7 @@ struct ConfigOptions {
   bool json = false;
 };
 
-// Everything that the answers come from.
+// Input data of all answers.
 struct Config {
   core::Diagnostics diagnostics;
   core::YamlNode root;
@@ -82,7 +82,7 @@ const char* verb_of(core::YamlChange::Kind kind) {
 
 void print_text(const core::Explanation& explanation, const std::vector<std::string>& made_from,
                 const ConfigOptions& options, const core::Diagnostics& diagnostics) {
-  constexpr int kPlace = 44;  // column of the places
+  constexpr int kPlace = 44;  // column in which positions are printed
   for (const core::ValueOrigin& value : explanation.values) {
     if (value.there) {
       const std::string head = value.path + ": " + core::to_flow_yaml(value.value);
@@ -140,7 +140,7 @@ void print_json(const core::Explanation& explanation, const std::vector<std::str
   fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-// `goal` for `parameters.goal`: the path of a key that was given by its last part alone.
+// The full path of a key given by its last part only, e.g. `parameters.goal` for `goal`.
 std::string whole_path(const core::YamlNode& root, const std::string& key) {
   const std::string head = key.substr(0, key.find('.'));
   for (const core::YamlEntry& section : root.entries) {
@@ -179,7 +179,7 @@ int explain(const ConfigOptions& options, Config& config) {
 void add_config_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ConfigOptions>();
   CLI::App* command = app.add_subcommand(
-      "config", "Prints a file with its bases and --set applied, or where a value comes from");
+      "config", "Prints a file with its bases and --set applied, or the origin of a value");
   command->add_option("FILE", options->file, "Behavior file or name; robot, world or scenario file")
       ->required();
   auto* explained = command->add_option(

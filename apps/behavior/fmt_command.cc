@@ -1,4 +1,4 @@
-// `footfall fmt`: the canonical layout of YAML files, comments kept.
+// `footfall fmt`: the canonical layout of YAML files; keeps comments.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -19,7 +19,7 @@ struct FmtOptions {
   bool check = false, to_stdout = false;
 };
 
-// The formatted text; nothing, the reason on stderr and an exit code otherwise.
+// The formatted text; nullopt on failure, with the reason on stderr and an exit code.
 std::optional<std::string> format_text(const std::string& name, const std::string& text,
                                        int& exit_code) {
   core::Diagnostics diagnostics;
@@ -35,8 +35,8 @@ std::optional<std::string> format_text(const std::string& name, const std::strin
       formatted && core::same_values(before, core::load_yaml_text(*formatted, name, problems));
   if (same && !problems.has_errors() && core::format_yaml(*formatted) == formatted)
     return formatted;
-  // Never a file that means something else: the layout of this one is left to its author.
-  fmt::print(stderr, "{}: error: cannot be laid out without a change of meaning; left as it is\n",
+  // Never change the meaning: leave the file unformatted.
+  fmt::print(stderr, "{}: error: cannot be formatted without a change of meaning; unchanged\n",
              name);
   exit_code = kMachineFailed;
   return std::nullopt;
@@ -65,7 +65,8 @@ int format_file(const std::string& file, const FmtOptions& options) {
 
 void add_fmt_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<FmtOptions>();
-  CLI::App* command = app.add_subcommand("fmt", "Lays YAML files out canonically; comments stay");
+  CLI::App* command =
+      app.add_subcommand("fmt", "Formats YAML files in the canonical layout; keeps comments");
   command->add_option("FILE", options->files, "YAML files, - for stdin to stdout")->required();
   auto* check = command->add_flag("--check", options->check,
                                   "Writes nothing; exit 1 and their names if files would change");
@@ -79,7 +80,7 @@ void add_fmt_command(CLI::App& app, int& exit_code) {
         exit_code = std::max(exit_code, format_file(file, *options));
       } catch (const std::runtime_error& error) {
         fmt::print(stderr, "error: {}\n", error.what());
-        // A file that cannot be read is wrong input; one that cannot be written is the machine's.
+        // Failure to read is an input error (exit code 2), failure to write a machine error (3).
         const bool reading =
             std::string_view(error.what()).find("cannot read") != std::string_view::npos;
         exit_code = std::max(exit_code, reading ? kBadInput : kMachineFailed);

@@ -17,7 +17,7 @@ struct GraphOptions {
   std::vector<std::string> expand;
 };
 
-// The format that was asked for, else that of the file's ending, else SVG.
+// The format given by option, else by the file's extension, else SVG.
 std::string format_of(const GraphOptions& options) {
   if (!options.format.empty()) return options.format;
   if (options.out.ends_with(".dot") || options.out.ends_with(".gv")) return "dot";
@@ -77,7 +77,7 @@ void add_graph_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"svg", "dot", "mermaid"}));
   command
       ->add_option("--expand", options->expand,
-                   "Draws only this state open, and all others closed (may be repeated)")
+                   "Draws only this state with its content (may be repeated)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->footer("Example: footfall graph balance -o balance.svg");

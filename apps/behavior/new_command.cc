@@ -1,4 +1,4 @@
-// `footfall new`: a behavior or a robot to begin with, made from the shipped scaffolds.
+// `footfall new`: creates a behavior or a robot from the shipped scaffolds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -20,7 +20,7 @@ struct NewOptions {
   std::string kind, name, from, base, robot;
 };
 
-// `FOLDER/NAME` in the search path; empty if it is nowhere.
+// `FOLDER/NAME` in the search path; empty if not found.
 std::string find_data(const std::string& path) {
   std::error_code ignored;
   for (const std::string& folder : search_path()) {
@@ -36,7 +36,7 @@ void refuse_existing(const fs::path& path) {
   }
 }
 
-// The text with the scalar under a key of the root replaced; the rest, comments too, stays.
+// Replaces the scalar under a key of the root; the rest stays, including comments.
 std::string with_value(const std::string& text, const char* key, const std::string& value) {
   core::Diagnostics diagnostics;
   const core::YamlNode root = core::load_yaml_text(text, "scaffold", diagnostics);
@@ -59,7 +59,7 @@ std::string stem(const NewOptions& options) {
   return name;
 }
 
-// A file must not be left behind that does not even load.
+// Throws unless the behavior loads, so that no invalid file is created.
 void expect_good_behavior(const std::string& text, const std::string& path) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions load;
@@ -76,7 +76,7 @@ void write_behavior(const std::string& text, const fs::path& path) {
   fmt::print("{} written; now: footfall check {}\n", path.string(), path.string());
 }
 
-// `base:` as the new file writes it: a name of the library as it is, a file as seen from there.
+// The value of `base:` in the new file: a library name unchanged, a file as a relative path.
 std::string base_as_written(const NewOptions& options, const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(options.base, ignored)) return options.base;
@@ -84,7 +84,7 @@ std::string base_as_written(const NewOptions& options, const fs::path& path) {
   return fs::absolute(options.base).lexically_normal().lexically_relative(folder).string();
 }
 
-// A file that derives from another, with what it could change as comments.
+// A file with a `base:`, and the values that it could change as comments.
 std::string derived_text(const NewOptions& options, const fs::path& path) {
   core::Diagnostics diagnostics;
   const core::YamlNode base =
@@ -99,7 +99,7 @@ std::string derived_text(const NewOptions& options, const fs::path& path) {
   std::string text = fmt::format("base: {}\n", base_as_written(options, path));
   if (!options.robot.empty()) text += fmt::format("robot: {}\n", options.robot);
   text +=
-      "# What differs from the base goes here: maps merge by key, all else is replaced whole,\n"
+      "# What differs from the base goes here: maps merge by key, everything else is replaced,\n"
       "# `NAME: off` removes, `KEY+:` appends to a list. `footfall config` on this file shows the "
       "result.\n";
   const core::YamlNode* parameters = base.find("parameters");
@@ -137,7 +137,7 @@ void new_behavior(const NewOptions& options) {
 
 void new_robot(const NewOptions& options) {
   const std::string name = stem(options);
-  // NAME alone goes where robots are found by name.
+  // A name without folder is created where robots are searched.
   const fs::path given(options.name);
   const fs::path folder = given.has_parent_path() ? given : fs::path("robots") / given;
   refuse_existing(folder);
@@ -149,7 +149,7 @@ void new_robot(const NewOptions& options) {
   robot = with_value(with_value(robot, "name", name), "model", name + ".xml");
   constexpr std::string_view kModel = "model=\"biped\"";
   body.replace(body.find(kModel), kModel.size(), fmt::format("model=\"{}\"", name));
-  // Made whole in a folder beside, then renamed.
+  // Created completely in a temporary folder, then renamed.
   fs::path part = folder;
   part += ".part";
   refuse_existing(part);
@@ -178,8 +178,8 @@ int make(const NewOptions& options) {
 
 void add_new_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<NewOptions>();
-  CLI::App* command =
-      app.add_subcommand("new", "Writes a small behavior or robot that runs; never over a file");
+  CLI::App* command = app.add_subcommand(
+      "new", "Creates a small behavior or robot that runs; never replaces a file");
   command->add_option("KIND", options->kind, "behavior or robot")
       ->required()
       ->check(CLI::IsMember({"behavior", "robot"}));
@@ -195,7 +195,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
       ->add_option("--base", options->base,
                    "behavior: a behavior's file or name to derive from, by `base:`")
       ->excludes(from);
-  command->add_option("--robot", options->robot, "behavior: the robot it is for, instead of hume");
+  command->add_option("--robot", options->robot, "behavior: its robot (default hume)");
   command->footer(
       "Example: footfall new behavior my_squat\nExample: footfall new behavior my_walk --base "
       "balance_best\nExample: footfall new robot my_biped");

@@ -1,5 +1,4 @@
-// `footfall set`: new values of a behavior's parameters and gains, written where they stand in its
-// files.
+// `footfall set`: writes new values of a behavior's parameters and gains to its files, in place.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,21 +22,21 @@ struct SetOptions {
   bool dry_run = false, yes = false;
 };
 
-// One number of a value, SI; a bare one is SI already.
+// One number of a value in SI; bare numbers are SI.
 std::optional<double> read_number(const core::YamlNode& node, const behaviors::ParameterInfo& info,
                                   core::Diagnostics& diagnostics) {
   return info.bare ? core::read_quantity(node, core::kNone, diagnostics)
                    : core::read_quantity(node, info.dimension, diagnostics);
 }
 
-// NAME=VALUE as what is asked of plan_save(): a list, or one number for all values of NAME.
+// Converts NAME=VALUE for plan_save(): a list, or one number for all values of NAME.
 std::optional<behaviors::SavedValue> read_setting(const behaviors::Behavior& behavior,
                                                   const std::string& name, const std::string& text,
                                                   core::Diagnostics& diagnostics) {
   const core::YamlNode node = core::load_yaml_text(text, name, diagnostics);
   const behaviors::ParameterPart part = behavior.find_parameter_part(name);
   behaviors::SavedValue value{name, {}};
-  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() says why it is unknown
+  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() reports the reason
   const auto& info = behavior.parameters[static_cast<std::size_t>(part.parameter)];
   const std::size_t size = part.component < 0 ? static_cast<std::size_t>(info.size) : 1;
   const std::vector<core::YamlNode> items =
@@ -87,7 +86,7 @@ int set_values(const SetOptions& options) {
 void add_set_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SetOptions>();
   CLI::App* command = app.add_subcommand(
-      "set", "Writes values of parameters and gains into a behavior's file; all else stays");
+      "set", "Writes values of parameters and gains to a behavior's file; the rest is unchanged");
   command->add_option("FILE", options->file, "Behavior file, or its name in the library")
       ->required();
   command
@@ -95,8 +94,8 @@ void add_set_command(CLI::App& app, int& exit_code) {
                    "Parameters and gains, values as in YAML: lift_time=160ms, goal.x=1m")
       ->required();
   command->add_option("--to", options->to,
-                      "A file on top of FILE, new or not, that takes the values instead");
-  command->add_option("--robot", options->robot, "Another robot than the file's");
+                      "Writes to this overlay, a new or existing file with FILE as base");
+  command->add_option("--robot", options->robot, "Robot, instead of the file's");
   auto* dry = command->add_flag("--dry-run", options->dry_run, "Shows the diff, writes nothing");
   command->add_flag("--yes", options->yes, "Writes without asking")->excludes(dry);
   command->footer("Example: footfall set balance lift_time=160ms --to my_balance.yaml");

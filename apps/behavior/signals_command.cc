@@ -1,5 +1,5 @@
-// `footfall signals`: every name that expressions, logs and reports of a behavior know, and what
-// can be set: its parameters and gains.
+// `footfall signals`: lists the names available to expressions, logs and reports of a behavior, and
+// its parameters and gains.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,7 @@ struct ListedName {
   std::string name, unit, text;
 };
 
-// `[0, 0]`, or a number alone.
+// `[0, 0]`, or a single number.
 std::string values_of(const behaviors::Behavior& behavior, const behaviors::ParameterInfo& info) {
   const auto first = behavior.values.begin() + info.slot;
   const std::vector<double> values(first, first + info.size);
@@ -24,7 +24,7 @@ std::string values_of(const behaviors::Behavior& behavior, const behaviors::Para
                         : fmt::format("[{:g}]", fmt::join(values, ", "));
 }
 
-// A parameter as expressions write it, a gain by its path.
+// A parameter by its name in expressions, a gain by its path.
 ListedName row_of(const behaviors::Behavior& behavior, const behaviors::ParameterInfo& info) {
   ListedName row{info.gain ? info.name : "$" + info.name, core::unit_text(info.dimension), {}};
   row.text = fmt::format("{} {}",
@@ -85,7 +85,7 @@ void add_signals_command(CLI::App& app, int& exit_code) {
       "signals", "Lists every signal of a behavior, its parameters and gains, with units");
   command->add_option("BEHAVIOR", options->file, "Behavior file or name")->required();
   command->add_option("FILTER", options->filter,
-                      "Only names that hold this, or match it with * and ?");
+                      "Only names that contain this, or match it with * and ?");
   command->footer("Example: footfall signals balance \"gains.*.kp\"");
   command->callback([options, &exit_code] { exit_code = list(options->file, options->filter); });
 }

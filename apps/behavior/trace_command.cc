@@ -1,4 +1,4 @@
-// `footfall trace`: the statechart alone, without a robot.
+// `footfall trace`: runs the statechart alone, without a robot.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// `footfall events`: what happened in a run, from its log, one line an event.
+// `footfall events`: the events of a run, from its log, one line an event.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,7 @@ double read_time(const std::string& text, const char* option, double otherwise) 
       fmt::format("{}: error: expected a time such as 2.5s, got '{}'", option, text));
 }
 
-// A kind that no log has is a slip; one that this log lacks is none.
+// A kind that no log can contain is an error; one that only this log lacks is not.
 void check_kinds(const std::vector<std::string>& kinds, const lab::Log& log) {
   std::set<std::string> known = {"transition", "mark", "step", "log",
                                  "fault",      "plan", "push", "end"};
@@ -77,7 +77,7 @@ void print_events(const EventsOptions& options) {
 void add_events_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EventsOptions>();
   CLI::App* command = app.add_subcommand(
-      "events", "Lists what happened in a run: transitions, marks, steps, texts, faults");
+      "events", "Lists the events of a run: transitions, marks, steps, texts, faults");
   command->add_option("LOG", options->log, "log.mcap, or the folder it is in")->required();
   command
       ->add_option(

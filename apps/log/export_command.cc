@@ -38,7 +38,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-// Columns in the log's order; a pattern that fits none is a mistake.
+// Selected columns in log order; a pattern without match is an error.
 std::vector<std::size_t> chosen(const ExportArguments& arguments, const lab::Log& log) {
   std::vector<bool> wanted(log.signals.size(), arguments.signals.empty());
   for (const std::string& pattern : arguments.signals) {
@@ -72,7 +72,7 @@ std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, d
     for (const std::size_t s : columns) {
       const float value = log.column[s][row];
       if (value != value) {
-        out.push_back(',');  // not in force: an empty field
+        out.push_back(',');  // no value: an empty field
       } else {
         fmt::format_to(std::back_inserter(out), ",{}", value);
       }
@@ -118,10 +118,10 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("--signals", arguments->signals, "Names or globs, e.g. \"com.pos.*\"")
       ->delimiter(',');
   command->add_flag("--events", arguments->events, "Events instead of signals");
-  command->add_flag("--all", arguments->all, "Every row there is, not only the evenly spaced ones");
+  command->add_flag("--all", arguments->all, "All rows, not only the evenly spaced ones");
   command->add_option("--from", arguments->from, "Begins at this time, e.g. 2s");
   command->add_option("--to", arguments->to, "Ends at this time");
-  command->add_option("-o,--output", arguments->out, "This file instead of stdout");
+  command->add_option("-o,--output", arguments->out, "Output file, instead of stdout");
   command->footer(
       "Example: footfall export out/run --csv --signals \"com.pos.*\" --from 2s --to 3s");
   command->callback(

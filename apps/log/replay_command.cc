@@ -1,5 +1,4 @@
-// `footfall replay` and `footfall diff`: the tick again on what a log has, and two logs side by
-// side.
+// `footfall replay` and `footfall diff`: repeats a run from its log, and compares two logs.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +28,7 @@ void print_lines(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("  {}\n", line);
 }
 
-// `name`: of a reload, empty for the log that begins with the run.
+// `name`: name of a reload, empty for the log at the beginning of the run.
 int verify(const std::string& name, const lab::Log& log, lab::Replay& replay) {
   if (!name.empty()) fmt::print("{}: ", name);
   const lab::ReplayReport report = lab::verify_replay(log, replay);
@@ -48,9 +47,9 @@ int verify(const std::string& name, const lab::Log& log, lab::Replay& replay) {
   fmt::print("first difference: tick {}, {:.6f} s, in {}\n", report.differs_at, report.time,
              report.state);
   if (report.lines.empty()) {
-    fmt::print("  a signal, by less than its logged value shows\n");
+    fmt::print("  a signal, by less than the precision of logged values\n");
   } else if (report.visible_at != report.differs_at) {
-    fmt::print("  by less than logged values show; at tick {}:\n", report.visible_at);
+    fmt::print("  by less than the precision of logged values; at tick {}:\n", report.visible_at);
   }
   print_lines(report.lines);
   return kRobotFailed;
@@ -102,11 +101,11 @@ int run_diff(const std::string& first, const std::string& second) {
 void add_replay_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand(
-      "replay", "Runs the tick again on a log's inputs, plans and edits, from the log's own files");
+      "replay", "Repeats the ticks of a run with the inputs, plans, edits and files of its log");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   command->add_flag("--verify", arguments->verify,
                     "Compares every tick bit for bit; names the first difference (exit 1)");
-  command->add_option("--behavior", arguments->behavior, "This behavior instead of the log's");
+  command->add_option("--behavior", arguments->behavior, "Behavior, instead of the log's");
   command->footer("Example: footfall replay out/run --verify");
   command->callback(
       [arguments, &exit_code] { exit_code = guarded([&] { return run_replay(*arguments); }); });
@@ -114,9 +113,9 @@ void add_replay_command(CLI::App& app, int& exit_code) {
 
 void add_diff_command(CLI::App& app, int& exit_code) {
   auto logs = std::make_shared<std::pair<std::string, std::string>>();
-  CLI::App* command = app.add_subcommand(
-      "diff",
-      "Where two runs part: settings, files, first differing input, command, signal, event");
+  CLI::App* command = app.add_subcommand("diff",
+                                         "Finds where two runs diverge: settings, files, first "
+                                         "differing input, command, signal, event");
   command->add_option("LOG", logs->first, "log.mcap, or the folder it is in")->required();
   command->add_option("OTHER", logs->second, "another")->required();
   command->footer("Example: footfall diff out/before out/after");

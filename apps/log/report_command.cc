@@ -24,13 +24,13 @@
 namespace footfall::apps {
 namespace {
 
-// A file beside the log; empty if it is not there.
+// Content of a file beside the log; empty if absent.
 std::string text_beside(const std::filesystem::path& log, const char* name) {
   std::ifstream file(log.parent_path() / name, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// A time as an option gives it. Throws std::runtime_error.
+// Parses a time option. Throws std::runtime_error.
 double time_of(const char* option, const std::string& text, double otherwise) {
   if (text.empty()) return otherwise;
   const auto quantity = core::parse_quantity(text);
@@ -41,7 +41,7 @@ double time_of(const char* option, const std::string& text, double otherwise) {
   return quantity->value;
 }
 
-// The part of a log that is asked for.
+// The requested part of a log.
 lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   const double from = time_of("--from", arguments.from, -kEver);
@@ -49,12 +49,12 @@ lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
   if (arguments.from.empty() && arguments.to.empty()) return log;
   lab::Log part = lab::log_window(log, from, to);
   if (part.rows() == 0) {
-    throw std::runtime_error("--from, --to: '" + log.path + "' has nothing between these times");
+    throw std::runtime_error("--from, --to: '" + log.path + "' has no rows between these times");
   }
   return part;
 }
 
-// The other logs of a run with reloads, which are in reports of their own.
+// Prints the other logs of a run with reloads, which have their own reports.
 void tell_reloads(const std::filesystem::path& log, std::FILE* stream) {
   std::filesystem::path folder = log.parent_path();
   if (folder.filename().string().starts_with("reload-")) folder = folder.parent_path();
@@ -70,7 +70,7 @@ void tell_reloads(const std::filesystem::path& log, std::FILE* stream) {
   }
 }
 
-// The diagram while the log has the rows around each transition.
+// Adds the state diagram. Needs the rows around each transition, so call it before thinning.
 void draw_states(const lab::Log& log, lab::ReportOptions& options) {
   try {
     options.diagram_svg = run_program("dot", "-Tsvg", lab::state_graph(log), "graphviz");
@@ -79,7 +79,7 @@ void draw_states(const lab::Log& log, lab::ReportOptions& options) {
   }
 }
 
-// Several logs on one page.
+// Writes the comparison of several logs on one page.
 void write_comparison(const ReportArguments& arguments, std::FILE* stream) {
   std::vector<std::string> names = {arguments.log};
   names.insert(names.end(), arguments.more.begin(), arguments.more.end());
@@ -168,7 +168,8 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
 void add_report_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = app.add_subcommand(
-      "report", "One self-contained HTML page from the log of a run, or of several side by side");
+      "report",
+      "Writes one self-contained HTML page from the log of a run, or of several side by side");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   command->add_option("OTHER", arguments->more, "further logs, compared with the first");
   command->add_option("-o,--output", arguments->out,

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kStripPictures = 16, kStripColumns = 8;
 constexpr int kPictureWidth = 240, kPictureHeight = 340;
-constexpr double kStripSteps = 4.0;  // steps that the strip shows
+constexpr double kStripSteps = 4.0;  // number of steps shown in the strip
 constexpr int kFilmWidth = 480, kFilmHeight = 600;
 constexpr double kFilmRate = 30.0;
 
@@ -52,7 +52,7 @@ std::size_t row_at(const lab::Log& log, double time) {
   return std::min(static_cast<std::size_t>(found - log.time.begin()), log.rows() - 1);
 }
 
-// When the last steps began.
+// Beginning of the last steps, s.
 double strip_begin(const lab::Log& log) {
   const auto* steps = log.values("steps");
   if (steps == nullptr || steps->back() < static_cast<float>(kStripSteps)) return log.time.front();

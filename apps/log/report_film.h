@@ -1,4 +1,4 @@
-// Pictures of a run from its log: joint positions of the log on the model that the run used.
+// Pictures of a run from its log: logged joint positions on the robot model of the run.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace footfall::apps {
 
-// Path of the MJCF that the log names. Throws std::runtime_error if it names none or it is gone.
+// Path of the MJCF named in the log. Throws std::runtime_error if there is none or it was deleted.
 std::string film_model(const lab::Log& log);
 
 // The frame of one row: configuration, time, state and contact forces.
@@ -32,11 +32,11 @@ class LoggedPose {
   std::vector<Foot> feet_;
 };
 
-// A strip of two rows of eight pictures: the last steps, at equal times over the time they took;
-// the whole run where there are no steps. Throws std::runtime_error (no EGL, no model).
+// A strip of two rows of eight pictures at equal time intervals over the last steps, or over the
+// whole run if there are no steps. Throws std::runtime_error (no EGL, no model).
 sim::Image film_strip(const lab::Log& log);
 
-// The whole run at 30 pictures a second. Throws std::runtime_error (no EGL, no ffmpeg, no model).
+// The whole run at 30 frames per second. Throws std::runtime_error (no EGL, no ffmpeg, no model).
 void write_film(const lab::Log& log, const std::string& path);
 
 }  // namespace footfall::apps

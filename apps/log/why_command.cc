@@ -1,4 +1,4 @@
-// `footfall why`: what a behavior decided at a moment of a logged run, and by which values.
+// `footfall why`: explains a behavior's decisions at a moment of a logged run.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -44,7 +44,8 @@ int run_why(const WhyArguments& arguments) {
 void add_why_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<WhyArguments>();
   CLI::App* command = app.add_subcommand(
-      "why", "Which transitions were taken at a moment, which were not, and each guard's terms");
+      "why",
+      "Explains a moment of a run: transitions taken and not taken, with each guard's terms");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   auto* at = command->add_option("--at", arguments->at,
                                  "A time, e.g. 12.3s (default: the fall, or the last transition)");

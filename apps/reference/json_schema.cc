@@ -26,8 +26,8 @@ bool is_list(const ValueSpec& value) {
          value.form == ValueForm::pairs;
 }
 
-// Writes the definitions of a file's maps. A map that lies in one of a file with `base`, or is laid
-// over another, need not have all its keys: there are two definitions of one that needs some.
+// Writes the definitions of a file's maps. Maps with required keys have two definitions: in a file
+// with `base:`, or in a map merged over another, required keys may be absent.
 class SchemaWriter {
  public:
   explicit SchemaWriter(const core::FileTable& file) : file_(file) {}
@@ -47,7 +47,8 @@ class SchemaWriter {
   }
 
  private:
-  // Whether a key is needed in it or in what lies in it, lists (which are always whole) apart.
+  // Whether a table or a table nested in it requires keys; not through lists, which are always
+  // complete.
   static bool needs_keys(const KeyTable& table, std::set<const KeyTable*>& seen) {
     if (!seen.insert(&table).second) return false;
     if (!table.part && !table.one_of[0].empty()) return true;
@@ -69,7 +70,7 @@ class SchemaWriter {
     const bool differs = part && needs_keys(table, seen);
     const std::string name = std::string(table.id) + (differs ? "_part" : "");
     if (!definitions_.contains(name)) {
-      definitions_[name] = nullptr;  // it may contain itself
+      definitions_[name] = nullptr;  // the table may contain itself
       definitions_[name] = map_schema(table, differs);
     }
     return {{"$ref", "#/definitions/" + name}};
@@ -131,7 +132,7 @@ class SchemaWriter {
     }
   }
 
-  // Where the selector is there, the keys of other variants are not.
+  // If the selector is present, keys of other variants are refused.
   static void add_variants(const KeyTable& table, Json& out) {
     const std::string selector(table.selector);
     for (const core::WordSpec& word : table.variants) {
@@ -151,17 +152,17 @@ class SchemaWriter {
     if (values[0].named) {
       std::array<ValueSpec, 3> inner = values;
       for (ValueSpec& value : inner) value.named = false;
-      // `stack: NAME` and `gains: {TASK: ...}`: a name beside a map by name.
+      // `stack: NAME` and `gains: {TASK: ...}`: alternatives of a name and a map by name.
       return {{"type", "object"}, {"additionalProperties", value_schema(inner, part)}};
     }
     if (values[1].kind != ValueKind::none && values[1].form == ValueForm::list &&
-        values[0].form == ValueForm::list) {  // each item is one of them
+        values[0].form == ValueForm::list) {  // each item matches one of them
       std::array<ValueSpec, 3> items = values;
       for (ValueSpec& value : items) value.form = ValueForm::one;
       return or_removed({{"type", "array"}, {"items", value_schema(items, false)}});
     }
     Json choices = Json::array();
-    const KeyTable* selected = nullptr;  // a map that is told from one by axis by a key of its own
+    const KeyTable* selected = nullptr;  // a map that has its own keys, unlike a map by axis
     for (const ValueSpec& value : values) {
       if (value.kind == ValueKind::map && !value.map->selector.empty() &&
           values[0].form == ValueForm::by_axis) {
@@ -180,7 +181,7 @@ class SchemaWriter {
     return {{"anyOf", std::move(choices)}};
   }
 
-  // A map with any key of the table is one; the selector is offered where nothing is written yet.
+  // A map with any key of the table is of that kind; editors offer the selector in an empty map.
   Json axis_or_map(const ValueSpec& by_axis, const KeyTable& table, bool part) {
     Json otherwise = one_schema(by_axis, part);
     const std::string selector(table.selector);
@@ -194,7 +195,7 @@ class SchemaWriter {
             {"else", std::move(otherwise)}};
   }
 
-  // What stands in a list is written whole.
+  // Values in lists are complete.
   Json one_schema(const ValueSpec& value, bool part) {
     ValueSpec item = value;
     item.form = ValueForm::one;
@@ -212,7 +213,7 @@ class SchemaWriter {
       case ValueForm::pairs:
         return or_removed({{"type", "array"}, {"items", pair_of(one_schema(item, false))}});
       case ValueForm::by_axis: {
-        Json out = quantity_schema(item);  // each keyword speaks of one type
+        Json out = quantity_schema(item);  // each keyword constrains one type only
         const Json one = shared(out);
         out["type"].push_back("array");
         out["type"].push_back("object");
@@ -228,7 +229,7 @@ class SchemaWriter {
     return {{"type", "array"}, {"items", item}, {"minItems", 2}, {"maxItems", 2}};
   }
 
-  // `$name` and `off` may stand for a list too.
+  // `$name` and `off` may replace a list, too.
   static Json or_removed(Json list) {
     list["type"] = {"array", "string"};
     list["pattern"] = anchored(substituted_pattern());
@@ -269,7 +270,7 @@ class SchemaWriter {
             {"patternErrorMessage", expected}};
   }
 
-  // Long patterns once, under the name of what they say.
+  // Stores long patterns once, named after their error message.
   Json shared(Json value) {
     std::string name = value["patternErrorMessage"].get<std::string>().substr(9);  // "expected "
     for (char& c : name) {

@@ -1,8 +1,8 @@
-// The JSON Schema (draft-07) of a kind of file, for editors: from the same tables as the loader.
+// The JSON Schema (draft-07) of a file kind for editors, from the same tables as the loader.
 //
-// It knows keys, words and the form of values with their units; not names of the author's own, nor
-// what needs the robot: that is what `footfall check` is for. What it accepts may be wrong; what it
-// refuses is.
+// It checks keys, words and the form of values with their units; not user-defined names, nor
+// anything that depends on the robot: `footfall check` does. A file that violates the schema is
+// invalid; a file that satisfies it may still be.
 #pragma once
 
 #include <nlohmann/json.hpp>

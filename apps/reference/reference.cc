@@ -44,7 +44,7 @@ the tables say *expression*, a text that begins with `=` is computed at run time
 |---|---|
 )";
 
-// A bar would end a cell.
+// A bar would end the table cell.
 std::string cell(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -1,4 +1,5 @@
-// The reference of all files as Markdown, from the same tables as the loader: docs/reference.md.
+// The reference of all file formats as Markdown, from the same tables as the loader:
+// docs/reference.md.
 #pragma once
 
 #include <string>

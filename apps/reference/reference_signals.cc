@@ -1,5 +1,5 @@
-// Signals as patterns; see reference_signals.h. They are registered for a robot and a behavior
-// whose parts have the names that stand for any.
+// Signal patterns; see reference_signals.h. Signals are registered for a robot and a behavior whose
+// parts have placeholder names.
 #include "apps/reference/reference_signals.h"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace {
 
 struct Row {
   std::string stem;               // without the last part
-  std::vector<std::string> ends;  // last parts of signals in a row with the same doc
+  std::vector<std::string> ends;  // last parts of consecutive signals with the same doc
   std::string unit;
   std::string doc;
 };

@@ -1,4 +1,4 @@
-// The signals of any behavior as patterns: `joint.JOINT.position`. Part of the reference.
+// The signals of all behaviors as patterns: `joint.JOINT.position`. Part of the reference.
 #pragma once
 
 #include <string>

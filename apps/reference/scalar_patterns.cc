@@ -1,4 +1,4 @@
-// Patterns of values as text; see scalar_patterns.h.
+// Regular expressions for values; see scalar_patterns.h.
 #include "apps/reference/scalar_patterns.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kNumber = R"([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)";
 constexpr std::string_view kExpression = "=.*";
-// A lone signal: a dotted name, or one of those without a dot (a test of the language holds them).
+// A single signal: a dotted name, or one of those without a dot (checked by a language test).
 constexpr std::string_view kSignal =
     R"([A-Za-z_]\w*(\.\w+)+|entry|t|time|state|steps|faults|true|false)";
 
@@ -30,15 +30,15 @@ std::string units(const core::Dimension* dimension) {
   return names.empty() ? "" : any_of(names);
 }
 
-// `kg m^2`, `1/s^2`, `Nm/rad`: more than one unit, or a power. Of which dimension they are is more
-// than a regular expression can say.
+// `kg m^2`, `1/s^2`, `Nm/rad`: several units, or a power. A regular expression cannot check their
+// dimension.
 std::string compound_unit() {
   const std::string unit = units(nullptr) + R"((\^-?\d)?)";
   return fmt::format(R"((1\s*/\s*{0}|{1}\^-?\d|{0}\s*[*/ ]\s*{0})(\s*[*/ ]\s*{0})*)", unit,
                      units(nullptr));
 }
 
-// These are written with one unit.
+// Dimensions written with a single unit.
 bool is_simple(core::Dimension dimension) {
   for (const core::Dimension simple : {core::kNone, core::kTime, core::kLength, core::kMass}) {
     if (dimension == simple) return true;

@@ -1,4 +1,4 @@
-// Regular expressions (as in JavaScript) for the texts of values: what a schema can say about them.
+// Regular expressions (JavaScript syntax) for values written as text, for the schema.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace footfall::apps {
 
-// What every value may be: `off`, which removes, or a text with a `$name` of a parameter or
+// Allowed for every value: `off`, which removes, or a text with a `$name` of a parameter or
 // argument.
 std::string substituted_pattern();
-// A value's texts, not counting numbers and lists; "" if any text will do.
+// Allowed texts of a value, other than numbers and lists; "" if any text is allowed.
 std::string text_pattern(const core::ValueSpec& value);
 
 }  // namespace footfall::apps

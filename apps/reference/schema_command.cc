@@ -1,5 +1,5 @@
-// `footfall schema`: a JSON Schema of each kind of file, for editors. `footfall reference`: the
-// same tables for people.
+// `footfall schema`: a JSON Schema of each file kind, for editors. `footfall reference`: the same
+// tables as Markdown.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

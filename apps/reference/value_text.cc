@@ -1,4 +1,4 @@
-// Values in words; see value_text.h.
+// Textual description of values; see value_text.h.
 #include "apps/reference/value_text.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@ using core::ValueForm;
 using core::ValueKind;
 using core::ValueSpec;
 
-// "a time" is "time" in a table.
+// Tables show "time" instead of "a time".
 std::string without_article(std::string text) {
   for (const char* article : {"a ", "an ", "the "}) {
     if (text.starts_with(article)) return text.substr(std::string_view(article).size());

@@ -1,4 +1,4 @@
-// What may stand under a key, in words: for the reference, and for what an editor shows.
+// Textual description of the values of a key, for the reference and for editors.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace footfall::apps {
 // "time", "list of transitions", "`mean` or `sum`"; with `links`, maps are links to their headings
 // in Markdown.
 std::string value_text(const core::ValueSpec& value, bool links);
-// All that may stand there: "number, or list of numbers".
+// All alternatives: "number, or list of numbers".
 std::string values_text(const core::KeySpec& key, bool links);
-// The line of an editor: doc, value, what holds without it.
+// Hover text of an editor: doc, value, default.
 std::string hover_text(const core::KeySpec& key);
-// The words of a list with blanks between, as `a`, `b` or `c`.
+// Formats words separated by blanks as `a`, `b` or `c`.
 std::string alternatives_text(std::string_view words);
 
 }  // namespace footfall::apps

@@ -1,4 +1,4 @@
-// `footfall run`: a behavior on a backend, with a status line, a summary, a log.
+// `footfall run`: runs a behavior on a backend, with a status line, a summary, a log.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -47,7 +47,7 @@ void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& 
   }
 }
 
-// The parameter that is the goal of the first planner; lab::has_goal holds.
+// The parameter that is the goal of the first planner; requires lab::has_goal.
 const behaviors::ParameterInfo& goal_parameter(const behaviors::Behavior& behavior) {
   const int slot = behavior.planners.front().goal_slot;
   return *std::ranges::find_if(behavior.parameters, [slot](const auto& info) {
@@ -55,7 +55,7 @@ const behaviors::ParameterInfo& goal_parameter(const behaviors::Behavior& behavi
   });
 }
 
-// The options move the goal as an operator would, so it has to be live.
+// The options move the goal like an operator does, so it must be live.
 void check_goal_is_live(const behaviors::Behavior& behavior, const std::string& option) {
   const behaviors::ParameterInfo& goal = goal_parameter(behavior);
   if (goal.live) return;
@@ -181,7 +181,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       exit_code = kBadInput;
     } catch (const std::exception& error) {
       const std::string text = error.what();
-      const bool ours = text.find("error: ") != std::string::npos;  // names a file of the user's
+      const bool ours = text.find("error: ") != std::string::npos;  // names a user's file
       std::fprintf(stderr, "%s%s\n", ours ? "" : "footfall: error: ", text.c_str());
       exit_code = ours ? kBadInput : kMachineFailed;
     }

@@ -11,7 +11,7 @@ namespace footfall::apps {
 
 namespace {
 
-// CLI11's own message lists the limits of a double.
+// CLI11's own message would list the limits of a double.
 CLI::Validator at_least(std::int64_t least, const char* what) {
   return CLI::Validator(
       [least, what](std::string& text) {
@@ -32,16 +32,16 @@ void add_run_options(CLI::App& command, RunOptions& o) {
       .add_option("BEHAVIOR", o.behavior,
                   "Behavior file, or the name of one in behaviors/library; or a scenario file")
       ->required();
-  command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's own");
+  command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's");
   command.add_option("--backend", o.backend, "mujoco (physics) or stub (double integrators)")
       ->check(CLI::IsMember({"mujoco", "stub"}))
       ->capture_default_str();
   command.add_option("--world", o.world, "World file, or the name of one in sim/worlds")
       ->capture_default_str();
   command.add_option("--for", o.duration_text,
-                     "How long at most, e.g. 20s (default 20 s, with --steps N 20 s + N s)");
+                     "Maximum duration, e.g. 20s (default 20 s, with --steps N 20 s + N s)");
   command.add_option("--steps", o.steps, "Ends after this many steps")->check(positive);
-  command.add_option("--seed", o.seed, "Seed of everything random in the world")
+  command.add_option("--seed", o.seed, "Seed of all random numbers")
       ->check(at_least(0, "a whole number from 0 on"))
       ->capture_default_str();
   command.add_option("--set", o.set,
@@ -50,7 +50,7 @@ void add_run_options(CLI::App& command, RunOptions& o) {
       "--push", o.pushes,
       "FORCE_N,DURATION_S,DIRECTION_DEG,AT with AT a time or `step N phase P`; direction in the "
       "heading frame, 0 forward, 90 left");
-  command.add_option("--goal", o.goal, "x,y in m: where it is told to be");
+  command.add_option("--goal", o.goal, "x,y in m: target position");
   command.add_option("--goal-velocity", o.goal_velocity,
                      "vx,vy in m/s: the goal moves from the start on");
   command.add_option("--log", o.log, "Folder for log.mcap, summary.json, timing.json")
@@ -60,15 +60,15 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_option("--film", o.film, "Writes the run as MP4 (needs ffmpeg)");
   command.add_flag("--log-all", o.log_all, "Logs the derived signals of every tick");
   command
-      .add_option(
-          "--log-every", o.log_every,
-          "Logs the derived signals of each N-th tick, of all around transitions and faults")
+      .add_option("--log-every", o.log_every,
+                  "Logs the derived signals of every N-th tick, and of all ticks around "
+                  "transitions and faults")
       ->check(positive)
       ->capture_default_str();
   command.add_flag("--realtime", o.realtime, "Paced by the wall clock");
   command.add_flag("--reload", o.reload,
-                   "A changed behavior file takes over the run, in a state with `reload: ok`");
-  command.add_option("--allow", o.allow, "What the behavior's scripts may reach: files, processes")
+                   "Loads a changed behavior file into the run, in a state with `reload: ok`");
+  command.add_option("--allow", o.allow, "Permissions of the behavior's scripts: files, processes")
       ->check(CLI::IsMember({"files", "processes"}));
   add_live_options(command, o.live);
   command.add_flag("--json", o.json, "One JSON object as the last line on stdout");

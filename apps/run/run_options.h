@@ -19,29 +19,29 @@ struct RunOptions {
   std::string backend = "mujoco";
   std::string world = "flat";
   std::string duration_text;  // as written, e.g. `20s`
-  double duration = 20.0;     // s; 0: no bound
-  std::int64_t steps = 0;     // 0: no bound
+  double duration = 20.0;     // s; 0: unlimited
+  std::int64_t steps = 0;     // 0: unlimited
   std::uint64_t seed = 1;
   std::vector<std::string> set;
   std::vector<std::string> pushes;
   std::string goal, goal_velocity;
-  std::string log = "out/run";  // folder
+  std::string log = "out/run";  // output folder
   bool no_log = false;
   bool no_report = false;
-  std::string film;  // MP4, empty: none
+  std::string film;  // path of an MP4; empty: none
   bool log_all = false;
-  int log_every = 6;  // ticks: 250 Hz at 1500 Hz
+  int log_every = 6;  // ticks per row: 250 Hz at 1500 Hz
   bool json = false;
   bool quiet = false;
   bool realtime = false;
   LiveOptions live;
-  bool reload = false;             // a changed behavior file takes over
-  std::vector<std::string> given;  // options that were written, `--seed`
-  std::vector<std::string> allow;  // what scripts may reach: files, processes
+  bool reload = false;             // reload a changed behavior file
+  std::vector<std::string> given;  // options given, e.g. `--seed`
+  std::vector<std::string> allow;  // capabilities of scripts: files, processes
 };
 
 void add_run_options(CLI::App& command, RunOptions& options);
-// Derives what depends on several options. Throws std::runtime_error with "--for: error: ...".
+// Sets options that depend on others. Throws std::runtime_error with "--for: error: ...".
 void finish_options(RunOptions& options);
 
 }  // namespace footfall::apps

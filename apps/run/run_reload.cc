@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLookEvery = 0.25;  // s
+constexpr double kLookEvery = 0.25;  // s, period of looking for changed files
 
-// A status line must not run into what is told.
+// Clears the status line before a message.
 void clear_line() {
   if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
 }
@@ -27,7 +27,7 @@ lab::ReloadSetup reload_setup(const RunOptions& options, hal::Hardware& hardware
   setup.hardware = &hardware;
   setup.load.search = search_path();
   setup.load.robot = options.robot;
-  core::Diagnostics ignored;  // they were split before
+  core::Diagnostics ignored;  // reported when they were split before
   setup.load.set = split_settings(options.set, ignored);
   setup.source = log_source(options, world);
   if (!options.no_log) setup.folder = options.log;

@@ -1,4 +1,4 @@
-// `run --reload`: watches the behavior's files and hands what they have become to the run.
+// `run --reload`: watches the behavior's files and passes changed versions to the run.
 #pragma once
 
 #include <memory>
@@ -9,13 +9,13 @@
 
 namespace footfall::apps {
 
-// Both null without --reload. `watch` goes first.
+// Both null without --reload. Destroy `watch` first.
 struct LiveFiles {
   std::unique_ptr<lab::Reloads> reloads;
   std::unique_ptr<engine::FileWatch> watch;
 };
 
-// hardware: of the loop; log: of the run, null: none. All must outlive the result.
+// hardware: the loop's; log: the run's, may be null. All must outlive the result.
 LiveFiles watch_files(const RunOptions& options, engine::ControlLoop& loop, hal::Hardware& hardware,
                       const sim::WorldDescription& world, engine::LogWriter* log);
 

@@ -1,4 +1,5 @@
-// `footfall run SCENARIO`: one seed of it, each expectation's verdict, the log, one JSON object.
+// `footfall run SCENARIO`: runs one seed, prints each expectation's verdict and one JSON object,
+// writes the log.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@
 namespace footfall::apps {
 namespace {
 
-// What the scenario says itself.
+// Refuses options whose value the scenario defines.
 void refuse_options(const RunOptions& options) {
   constexpr std::array kSaid = {"--robot", "--world", "--for",           "--steps", "--push",
                                 "--goal",  "--film",  "--goal-velocity", "--reload"};
@@ -36,7 +37,7 @@ lab::ScenarioDescription load_checked(const RunOptions& options) {
   if (!scenario.behavior->has_robot) {
     throw InputError(options.behavior + ": error: its behavior has no `robot:` and cannot be run");
   }
-  core::Diagnostics physics;  // whose places are of the behavior's files
+  core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics);
   print_diagnostics(physics);
@@ -64,7 +65,7 @@ lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors) {
   return hooks;
 }
 
-// Beside the log: the result, the run's figures, the trace for --bless.
+// Written beside the log: the result, the run's metrics, the trace for --bless.
 void write_results(const RunOptions& options, const lab::ScenarioDescription& scenario,
                    const lab::RunIdentity& id, const lab::ScenarioRun& done) {
   const auto figures = lab::summary_json(id, done.run, true);

@@ -1,4 +1,4 @@
-// The parts of a run; see run_setup.h.
+// Components of a run; see run_setup.h.
 #include "apps/run/run_setup.h"
 
 #include <fmt/format.h>
@@ -100,7 +100,7 @@ engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDe
 
 namespace {
 
-// Prints what the behavior says, as it says it; a chatty one must not drown the summary.
+// Prints log messages of the behavior as they occur; limited, so that the summary remains visible.
 std::function<void(double, const std::string&)> said_printer(const RunOptions& options) {
   constexpr int kMost = 50;
   const bool status = isatty(STDERR_FILENO) != 0;
@@ -166,7 +166,7 @@ void write_file(const std::string& path, const std::string& text) {
 
 namespace {
 
-// What was asked for, for whoever reads the log.
+// The command line, stored in the log.
 std::string command_line(const RunOptions& options) {
   std::string text = "run " + options.behavior;
   const auto add = [&](const char* name, const std::string& value) {
@@ -181,14 +181,14 @@ std::string command_line(const RunOptions& options) {
   return text;
 }
 
-// Logs of an earlier run's reloads would pass for this one's.
+// Logs of an earlier run's reloads would be mistaken for this run's.
 void remove_reloads(const std::string& folder) {
   for (int k = 1;; ++k) {
     const fs::path path = fs::path(folder) / fmt::format("reload-{}", k);
     std::error_code error;
     if (!fs::exists(path / "log.mcap", error)) return;
     fs::remove(path / "log.mcap", error);
-    fs::remove(path, error);  // if nobody has put anything else there
+    fs::remove(path, error);  // unless it contains other files
   }
 }
 
@@ -201,7 +201,7 @@ lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription
   source.world_file = world.path;
   if (options.backend == "mujoco") source.friction = world.friction;
   source.settings = loop_settings(options, world);
-  core::Diagnostics ignored;  // they were loaded
+  core::Diagnostics ignored;  // loaded before
   source.set = split_settings(options.set, ignored);
   source.command = command_line(options);
   source.row_every = options.log_all ? 1 : options.log_every;

@@ -1,5 +1,4 @@
-// What every run is put together from: world, backend, loop settings, log. For behaviors and
-// scenarios.
+// Components of every run: world, backend, loop settings, log. For behaviors and scenarios.
 #pragma once
 
 #include <atomic>
@@ -19,15 +18,15 @@
 
 namespace footfall::apps {
 
-// The backend with what only it can do.
+// The backend, and functions that only this backend has.
 struct Backend {
   std::unique_ptr<hal::Hardware> hardware;
   sim::MujocoBackend* mujoco = nullptr;
   std::string physics;
 };
 
-// A world by name or path; `beside`: a file in whose folder it is sought first; `place`: where it
-// is named. Prints what is wrong with it; throws InputError.
+// Loads a world by name or path. `beside`: a file in whose folder it is searched first; `place`:
+// position of the reference, for messages. Prints problems and throws InputError.
 sim::WorldDescription load_world(const std::string& name, const std::string& beside = {},
                                  const std::string& place = {});
 Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
@@ -35,23 +34,23 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world);
 // Time, steps, pace, log rate, status line, counted allocations.
 lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop);
-// Puts a run on the network of live tuning if its options say so, and says where; null if not. What
-// it returns must live as long as the run. Throws what make_link() throws.
+// Connects a run to the network of live tuning if its options say so, and prints the address; null
+// if not. The result must outlive the run. Throws like make_link().
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
                                              lab::RunSpec& spec);
-// Set by Ctrl-C from now on.
+// Set by Ctrl-C from this call on.
 const std::atomic<bool>* stop_on_signals();
-// What a log says of how the run was set up.
+// Setup data recorded in the log.
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);
-// Creates the folder and the log in it, whose path goes to `id`; null with --no-log.
+// Creates the folder and the log in it, whose path is added to `id`; null with --no-log.
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,
                                             const sim::WorldDescription& world,
                                             lab::RunIdentity& id);
-// Writes a small text file whole or not at all.
+// Writes a small text file atomically.
 void write_file(const std::string& path, const std::string& text);
 
-// `footfall run` of a scenario file; the exit code. Throws InputError.
+// `footfall run` of a scenario file; returns the exit code. Throws InputError.
 int run_scenario_file(RunOptions options);
 
 }  // namespace footfall::apps

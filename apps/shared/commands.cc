@@ -1,4 +1,4 @@
-// Shared by the sub-commands; see commands.h.
+// Functions shared by the sub-commands; see commands.h.
 #include "apps/shared/commands.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ std::vector<std::string> search_path() {
       begin = end + 1;
     }
   }
-  // An installed program finds its data beside itself, wherever it was moved to.
+  // An installed program finds its data relative to itself, so that the installation can be moved.
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error)
@@ -53,7 +53,7 @@ void print_diagnostics(const core::Diagnostics& diagnostics) {
     for (const auto& [word, colour] : {std::pair(" error: ", 31), std::pair(" warning: ", 33)}) {
       const std::string coloured = fmt::format(
           " \033[1;{}m{}\033[0m ", colour, std::string_view(word).substr(1, std::strlen(word) - 2));
-      // The first of each line: what follows may quote the file.
+      // Only the first occurrence in each line: the rest may quote the file.
       for (std::size_t line = 0; line < text.size();) {
         const std::size_t end = std::min(text.find('\n', line), text.size());
         const std::size_t at = text.find(word, line);

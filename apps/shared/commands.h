@@ -1,4 +1,4 @@
-// What every sub-command offers to main(), and what they share.
+// Registration of all sub-commands, and functions that they share.
 #pragma once
 
 #include <memory>
@@ -16,17 +16,17 @@ class App;
 
 namespace footfall::apps {
 
-// A mistake in the input: printed as it is, exit code 2; empty: printed already.
+// An input error: printed without prefix, exit code 2. Empty if already printed.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 inline constexpr int kGood = 0;
 inline constexpr int kRobotFailed = 1;    // the robot fell, or a test failed
-inline constexpr int kBadInput = 2;       // the input is wrong
-inline constexpr int kMachineFailed = 3;  // the machine or the backend failed
+inline constexpr int kBadInput = 2;       // input error
+inline constexpr int kMachineFailed = 3;  // machine or backend failure
 
-// Each adds its sub-command with a callback that sets `exit_code`.
+// Each function adds a sub-command whose callback sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_trace_command(CLI::App& app, int& exit_code);
@@ -35,7 +35,7 @@ void add_graph_command(CLI::App& app, int& exit_code);
 void add_schema_command(CLI::App& app, int& exit_code);
 void add_reference_command(CLI::App& app, int& exit_code);
 
-// The kinds of file that people write, as tables of keys.
+// The kinds of user files, as key tables.
 std::vector<const core::FileTable*> file_tables();
 void add_fmt_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app, int& exit_code);
@@ -50,22 +50,23 @@ void add_sweep_command(CLI::App& app, int& exit_code);
 void add_set_command(CLI::App& app, int& exit_code);
 void add_tune_command(CLI::App& app, int& exit_code);
 
-// Folders that hold robots/, behaviors/library/ and sim/worlds/: the working folder, those of
-// FOOTFALL_PATH (colons between), the source tree, the installed data.
+// Folders with robots/, behaviors/library/ and sim/worlds/: the working folder, those of
+// FOOTFALL_PATH (separated by colons), the source tree, the installed data.
 std::vector<std::string> search_path();
 
-// NAME itself if it is a file, else behaviors/library/NAME.yaml in the search path; NAME if
-// nowhere.
+// NAME itself if it is a file, else behaviors/library/NAME.yaml in the search path; NAME if not
+// found.
 std::string find_behavior_file(const std::string& name);
 
-// Loads a behavior, judges what it asks of its robot's physics if told to, and prints every problem
-// on stderr; nullptr if there were errors.
+// Loads a behavior, optionally checks its physics, and prints every problem on stderr; nullptr if
+// there were errors.
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
                                                      const std::string& robot,
                                                      const std::vector<std::string>& set,
                                                      bool physics = false);
 
-// Every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is set).
+// Prints every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is
+// set).
 void print_diagnostics(const core::Diagnostics& diagnostics);
 
 // Splits NAME=VALUE texts; a text without `=` is reported as an error.

@@ -1,4 +1,4 @@
-// From options to a link; see live_options.h.
+// Creates a link from options; see live_options.h.
 #include "apps/shared/live_options.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ double rate_of(const std::string& text) {
   return quantity->value;
 }
 
-// Each kind of packet that was refused, and how many.
+// The number of refused packets by reason.
 std::string rejected_text(const engine::LinkCounters& counters) {
   std::string text;
   for (std::size_t k = 1; k < counters.rejected.size(); ++k) {
@@ -50,14 +50,15 @@ void add_live_options(CLI::App& command, LiveOptions& o) {
       command
           .add_option("--lcm-key", o.key,
                       "File with the key that edits need (footfall tune key FILE makes one); "
-                      "without it, the user's own")
+                      "default: the user's own key")
           ->needs(lcm);
   command
-      .add_flag("--lcm-open", o.open, "Edits need no key: everybody in reach may change the run")
+      .add_flag("--lcm-open", o.open,
+                "Accepts edits without a key: everybody on the network may change the run")
       ->needs(lcm)
       ->excludes(key);
   o.prefix = engine::kLivePrefix;
-  command.add_option("--lcm-prefix", o.prefix, "First part of the channels' names")
+  command.add_option("--lcm-prefix", o.prefix, "Prefix of the channel names")
       ->needs(lcm)
       ->capture_default_str();
   command
@@ -76,7 +77,7 @@ void join_live_url(int& argc, char** argv) {
     }
     joined = std::string("--lcm=") + argv[i + 1];
     argv[i] = joined.data();
-    for (int k = i + 1; k < argc; ++k) argv[k] = argv[k + 1];  // the last one is null
+    for (int k = i + 1; k < argc; ++k) argv[k] = argv[k + 1];  // argv ends with a null pointer
     --argc;
     return;
   }

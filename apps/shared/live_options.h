@@ -1,4 +1,4 @@
-// The options of `footfall run` that put it on the network of live tuning.
+// Options of `footfall run` for live tuning over a network.
 #pragma once
 
 #include <memory>
@@ -17,23 +17,23 @@ class LcmLink;
 namespace footfall::apps {
 
 struct LiveOptions {
-  std::string url;     // empty: nothing listens
-  std::string key;     // file; empty: the user's own
-  bool open = false;   // no key
-  std::string prefix;  // of the channels
+  std::string url;     // empty: live tuning is off
+  std::string key;     // path of the key file; empty: the user's default key
+  bool open = false;   // no key required
+  std::string prefix;  // prefix of the channel names
   std::string telemetry = "50 Hz";
 };
 
 void add_live_options(CLI::App& command, LiveOptions& options);
 
-// `--lcm URL` as `--lcm=URL`: without the `=` the next argument could as well be the behavior.
+// Joins `--lcm URL` to `--lcm=URL`: without the `=` the next argument could also be the behavior.
 void join_live_url(int& argc, char** argv);
 
-// The link that the options ask for, null without --lcm; warns where everybody may change the run.
-// Throws InputError for what cannot be, std::runtime_error where there is no such network.
+// Creates the link given by the options, null without --lcm; warns if everybody may change the run.
+// Throws InputError for invalid options, std::runtime_error if the network is not available.
 std::unique_ptr<engine::LcmLink> make_link(const LiveOptions& options, engine::ControlLoop& loop);
 
-// Of a run that has ended: a line for people, and the same for scripts.
+// Statistics of the link after a run: one line of text, and JSON.
 std::string live_text(const LiveOptions& options, const engine::LcmLink& link);
 nlohmann::ordered_json live_json(const LiveOptions& options, const engine::LcmLink& link);
 

@@ -1,4 +1,4 @@
-// Logs of the command line; see log_argument.h.
+// Log arguments on the command line; see log_argument.h.
 #include "apps/shared/log_argument.h"
 
 #include <cstdio>
@@ -30,7 +30,7 @@ int guarded(const std::function<int()>& work) {
     return work();
   } catch (const std::runtime_error& error) {
     const std::string text = error.what();
-    const bool placed = text.find("error: ") != std::string::npos;  // of a file, with its place
+    const bool placed = text.find("error: ") != std::string::npos;  // names a file and a position
     std::fprintf(stderr, "%s%s%s", placed ? "" : "error: ", text.c_str(),
                  text.ends_with('\n') ? "" : "\n");
     return kBadInput;

@@ -1,4 +1,4 @@
-// A log named on the command line.
+// Log arguments on the command line.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,14 @@
 
 namespace footfall::apps {
 
-// The folder of a log stands for the log in it.
+// Path of the log; the argument may be its folder.
 std::string log_path(const std::string& argument);
 
-// With all rows and inputs; a cut is told on stderr. Throws std::runtime_error.
+// Reads all rows and inputs; prints a note on stderr if the log is truncated. Throws
+// std::runtime_error.
 lab::Log read_whole_log(const std::string& argument);
 
-// What `work` returns; a std::runtime_error becomes a text on stderr and exit code 2.
+// Returns the result of `work`; a std::runtime_error is printed on stderr and gives exit code 2.
 int guarded(const std::function<int()>& work);
 
 }  // namespace footfall::apps

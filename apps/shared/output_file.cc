@@ -1,4 +1,4 @@
-// Files that a command writes, programs that it calls; see output_file.h.
+// Writes output files and calls programs; see output_file.h.
 #include "apps/shared/output_file.h"
 
 #include <fcntl.h>
@@ -41,7 +41,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 }  // namespace
 
 void write_whole_file(const std::string& path, std::string_view text) {
-  // A link stays a link: what it points to is replaced.
+  // A symbolic link is kept: its target is replaced.
   std::error_code ignored;
   const std::filesystem::path real = std::filesystem::weakly_canonical(path, ignored);
   const std::string target = ignored || real.empty() ? path : real.string();
@@ -82,7 +82,7 @@ std::string read_whole_file(const std::string& path) {
 
 std::string run_program(const std::string& program, const std::string& argument,
                         std::string_view input, const std::string& package) {
-  // Through files: a pipe each way could fill up while nobody reads the other.
+  // Temporary files, because with two pipes both processes could block.
   const File in(std::tmpfile(), &std::fclose), out(std::tmpfile(), &std::fclose);
   if (!in || !out) fail(program, "cannot make a temporary file");
   if (!core::write_all(::fileno(in.get()), input)) fail(program, "cannot write its input");

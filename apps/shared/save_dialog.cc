@@ -1,4 +1,4 @@
-// Values that a command saves: shown, asked about, written; see save_dialog.h.
+// Shows, confirms and writes changed values; see save_dialog.h.
 #include "apps/shared/save_dialog.h"
 
 #include <fmt/format.h>

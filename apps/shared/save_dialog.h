@@ -1,4 +1,4 @@
-// Values that a command saves: shown, asked about, written.
+// Shows, confirms and writes changed values.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 namespace footfall::apps {
 
 // Prints the notes (stderr) and the diff of a plan that is not refused, asks on the terminal unless
-// `yes`, writes unless `dry_run`. `name`: the file, for people. The exit code; throws InputError
-// where nobody can be asked.
+// `yes`, writes unless `dry_run`. `name`: the file name for messages. Returns the exit code; throws
+// InputError if confirmation is impossible.
 int show_and_write(const behaviors::SavePlan& plan, const std::string& name, bool dry_run,
                    bool yes);
 

@@ -27,14 +27,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the sweep is, and its file if it came from one.
+// A sweep, and its file if it was loaded from one.
 struct Loaded {
   PreparedSweep prepared;
-  core::YamlNode tree;  // of the command line
+  core::YamlNode tree;  // built from the command line
   std::string file;     // empty: the command line
 };
 
-// Throws InputError after printing what is wrong.
+// Throws InputError after printing the problems.
 Loaded load(const SweepCommandOptions& options) {
   if (options.plan.what.empty()) {
     throw InputError("sweep: error: expected a sweep file, a scenario or a behavior");
@@ -107,7 +107,7 @@ void write_report(const std::string& folder, const lab::SweepTable& table) {
   fmt::print("  report       {}\n", path);
 }
 
-// Whole, and nothing broke.
+// 0 if all runs are done and none is broken.
 int exit_code_of(const lab::SweepTable& table) {
   const bool all = table.rows.size() == table.identity.runs;
   for (const lab::SweepRow& row : table.rows) {
@@ -172,12 +172,12 @@ int run(const SweepCommandOptions& options, const Loaded& loaded, const std::str
   lab::SweepStore store(lab::store_path(out, options.shard, options.shards));
   const lab::SweepIdentity identity = identity_of(options, prepared);
   if (!store.empty() && store.identity().program != identity.program) {
-    std::fputs("warning: the runs so far were made by another build of footfall\n", stderr);
+    std::fputs("warning: earlier runs were made by another build of footfall\n", stderr);
   }
   store.begin(prepared.sweep, identity,
               lab::shard_ids(identity.runs, options.shard, options.shards), options.extend);
   lab::SweepSettings settings;
-  // This very program, even if it is built anew meanwhile.
+  // This executable, even if it is rebuilt during the sweep.
   settings.program =
       options.own_program ? fmt::format("/proc/{}/exe", ::getpid()) : options.program;
   settings.folder = out + "/files";
@@ -191,7 +191,7 @@ int run(const SweepCommandOptions& options, const Loaded& loaded, const std::str
   const lab::SweepProgress progress = lab::run_sweep(prepared.sweep, store, settings);
   if (terminal) std::fputs("\r\033[K", stderr);
   fmt::print("{} in {}{}\n", progress_text(progress), clock_text(progress.elapsed),
-             progress.done < progress.to_do ? ": stopped; the same command goes on" : "");
+             progress.done < progress.to_do ? ": stopped; repeat the command to continue" : "");
   fmt::print("  results      {}\n", lab::store_path(out, options.shard, options.shards));
   const lab::SweepTable table = store.read();
   if (!options.no_report && options.shards == 1) write_report(out, table);

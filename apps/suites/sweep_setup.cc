@@ -1,4 +1,4 @@
-// See sweep_setup.h.
+// Loads and checks a sweep; see sweep_setup.h.
 #include "apps/suites/sweep_setup.h"
 
 #include <fmt/format.h>
@@ -21,14 +21,14 @@ void load_and_check_world(const std::string& path, core::Diagnostics& diagnostic
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
 }
 
-// A file beside the one that names it, or one that is found by name.
+// Finds a world beside the file that names it, or by name.
 std::string find_world(const std::string& beside, const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(beside).parent_path();
   const std::string path = sim::find_world_file((folder / name).string(), {});
   return path.empty() ? sim::find_world_file(name, search_path()) : path;
 }
 
-// Parameters of the world need a file to be laid over.
+// Varied parameters of the world need a file as `base:`, so name the default world.
 void name_default_world(lab::SweepDescription& sweep, core::Diagnostics& diagnostics) {
   const bool needed = std::ranges::any_of(
       sweep.axes, [](const lab::SweepAxis& axis) { return lab::is_world_axis(axis.name); });

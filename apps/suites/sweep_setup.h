@@ -1,4 +1,4 @@
-// A sweep ready to be run: loaded, its worlds found, everything checked.
+// A sweep ready to run: loaded, worlds found, everything checked.
 #pragma once
 
 #include <string>
@@ -11,15 +11,15 @@ namespace footfall::apps {
 
 struct PreparedSweep {
   lab::SweepDescription sweep;
-  std::vector<std::string> worlds;  // path of each of its worlds
-  std::vector<std::string> inputs;  // files that decide what runs
+  std::vector<std::string> worlds;  // path of each of the sweep's worlds
+  std::vector<std::string> inputs;  // files that determine the runs
 };
 
-// Problems go to diagnostics.
+// Adds problems to diagnostics.
 PreparedSweep prepare_sweep(lab::SweepDescription sweep, core::Diagnostics& diagnostics);
 // For `footfall check`.
 void check_sweep_file(const std::string& path, core::Diagnostics& diagnostics);
-// Of the files' contents, in their order.
+// Digest of the contents of files, in this order.
 std::string digest_of_files(const std::vector<std::string>& paths);
 
 }  // namespace footfall::apps

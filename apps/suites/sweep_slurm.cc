@@ -1,4 +1,4 @@
-// See sweep_slurm.h.
+// Writes the script for Slurm; see sweep_slurm.h.
 #include "apps/suites/sweep_slurm.h"
 
 #include <filesystem>
@@ -24,7 +24,7 @@ std::string find_template(const std::string& given) {
   throw InputError("--slurm: error: no lab/slurm/array.sh in the search path: give --template");
 }
 
-// What Slurm takes as a job's name.
+// The name restricted to characters that Slurm allows in job names.
 std::string job_name(std::string name) {
   for (char& c : name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') c = '_';

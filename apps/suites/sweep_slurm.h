@@ -10,7 +10,7 @@ struct SlurmJob {
   std::string sweep_file;
   int shards = 1, jobs = 1;
   bool keep_logs = false;
-  std::string template_path;  // empty: the one that comes with the program
+  std::string template_path;  // empty: the template shipped with the program
 };
 
 // Writes OUT/slurm.sh and returns its path. Throws InputError, std::runtime_error.

@@ -1,4 +1,4 @@
-// `footfall test`: runs scenarios as tests, side by side, each in a process of its own.
+// `footfall test`: runs scenarios as tests, in parallel, each in its own process.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -35,7 +35,7 @@ struct TestOptions {
   bool bless = false, yes = false;
 };
 
-// The places where a project keeps its scenarios.
+// Folders in which projects keep their scenarios.
 std::vector<std::string> default_folders() {
   std::vector<std::string> folders;
   for (const char* folder : {"tests/runs/regression", "behaviors"}) {
@@ -71,7 +71,7 @@ double read_timeout(const std::string& text) {
 
 std::string session_file(const TestOptions& options) { return options.out + "/session.json"; }
 
-// The files of what failed in the last session.
+// Files of the scenarios that failed in the last session.
 std::vector<std::string> failed_before(const TestOptions& options) {
   std::string text;
   try {
@@ -107,7 +107,7 @@ lab::SuiteSelection selection_of(const TestOptions& options) {
   return selection;
 }
 
-// What is to be run; empty if the last session had no failures.
+// The scenarios to run; empty if only failures were requested and there were none.
 std::vector<lab::SuiteScenario> choose(const TestOptions& options) {
   const lab::SuiteSelection selection = selection_of(options);
   std::vector<std::string> files;
@@ -203,7 +203,7 @@ int exit_code_of(const Suite& suite) {
 }
 
 void write_results(const TestOptions& options, const Suite& suite) {
-  // Bytes that are no UTF-8 (a child's stderr) are shown as such, not an exception.
+  // Invalid UTF-8 (a child's stderr) is replaced instead of raising an exception.
   const auto text = [](const nlohmann::ordered_json& json) {
     return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   };
@@ -230,7 +230,7 @@ lab::SuiteSettings settings_of(const TestOptions& options) {
   return settings;
 }
 
-// Only what has a golden trace, and of that the seed that the trace is of.
+// Keeps only scenarios with a golden trace, and of those only the seed of the trace.
 void keep_golden(std::vector<lab::SuiteScenario>& scenarios) {
   std::erase_if(scenarios, [](const lab::SuiteScenario& s) { return s.golden.empty(); });
   for (lab::SuiteScenario& scenario : scenarios) scenario.seeds.resize(1);
@@ -244,7 +244,7 @@ bool agreed(std::size_t count) {
   return answer == 'y' || answer == 'Y';
 }
 
-// Shows what would change, asks, writes.
+// Shows the changes, asks, writes.
 int bless_traces(const TestOptions& options, const Suite& suite) {
   std::vector<lab::Blessing> list = lab::blessings(suite);
   bool refused = suite.interrupted;
@@ -305,18 +305,20 @@ void add_options(CLI::App& command, TestOptions& o) {
   command.add_option(
       "SCENARIO", o.paths,
       "Scenario files, or folders of them (default: tests/runs/regression and behaviors)");
-  command.add_option("-j,--jobs", o.jobs, "Runs at once (default: one for each processor)")
+  command
+      .add_option("-j,--jobs", o.jobs, "Number of parallel runs (default: one for each processor)")
       ->check(CLI::PositiveNumber);
   command.add_option("--filter", o.filter,
                      "Only scenarios whose name or path matches, e.g. 'push*'");
   command.add_option("--label,--labels", o.labels, "Only scenarios with one of these labels");
   command.add_flag("--quick", o.quick, "Only scenarios with the label `quick`");
-  command.add_option("--shard", o.shard, "I/N: the I-th of N parts of about equal length");
+  command.add_option("--shard", o.shard, "I/N: the I-th of N shards of about equal duration");
   command.add_option("--seeds", o.seeds, "A..B: these seeds instead of the scenarios' own");
   command.add_option(
       "--timeout", o.timeout,
-      "Wall time of one run, e.g. 60s (default: 60 s and 3 s for each second of it)");
-  command.add_flag("--rerun-failed", o.rerun_failed, "What failed in the last session of --out");
+      "Limit of wall time of one run, e.g. 60s (default: 60 s and 3 s for each second of it)");
+  command.add_flag("--rerun-failed", o.rerun_failed,
+                   "Only scenarios that failed in the last session of --out");
   command.add_option("--out", o.out, "Folder for logs of failures and the session's state")
       ->capture_default_str();
   command.add_flag("--bless", o.bless,
@@ -329,7 +331,8 @@ void add_options(CLI::App& command, TestOptions& o) {
   command.add_option(
       "--coverage", o.coverage,
       "Lists states, transitions and conditions that no run reached; writes them as JSON");
-  command.add_option("--program", o.program, "The footfall that runs them (default: this one)");
+  command.add_option("--program", o.program,
+                     "Path of the footfall program for the runs (default: this one)");
   command.footer("Example: footfall test --quick -j 2 --junit out/junit.xml");
 }
 

@@ -1,4 +1,4 @@
-// Sub-commands of `footfall tune` that ask once and end.
+// Sub-commands of `footfall tune` that perform one action and exit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ int explain(const std::vector<std::string>& problems) {
   return kBadInput;
 }
 
-// Those that `names` mean, each once, in their order; false: a problem was said.
+// Indices of the parameters that match `names`, each once, in order; false after an error message.
 bool find_named(const TuneModel& model, const std::vector<std::string>& names,
                 std::vector<int>& found) {
   std::vector<std::string> problems;

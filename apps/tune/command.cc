@@ -14,7 +14,7 @@ namespace {
 
 using Options = std::shared_ptr<TuneOptions>;
 
-// A time with its unit into `seconds`.
+// Adds an option for a time with unit, stored in `seconds`.
 void add_time(CLI::App& command, const std::string& name, double& seconds,
               const std::string& text) {
   command.add_option_function<std::string>(
@@ -30,7 +30,7 @@ void add_time(CLI::App& command, const std::string& name, double& seconds,
       text);
 }
 
-// Does it; what goes wrong is said on stderr.
+// Runs an action; errors are printed on stderr.
 int run_action(const TuneOptions& options, int (*action)(const TuneOptions&)) {
   try {
     return action(options);
@@ -64,24 +64,23 @@ void add_edits(CLI::App& tune, const Options& o, int& exit_code) {
                              "Changes values: all of them in one tick, or none", tune_set);
   set->add_option("NAME=VALUE", o->names, "lift_time=150ms, goal.x=0.2, \"NAME=[220, 237, 400]\"")
       ->required();
-  add_time(*set, "--over", o->over, "The values move there in that time");
+  add_time(*set, "--over", o->over, "Duration of a linear ramp to the values");
   add_common(set);
   set->footer("Example: footfall tune set lift_time=150ms land_time=150ms --over 0.5s");
   CLI::App* ramp =
-      add_action(tune, o, exit_code, "ramp", "The same, with the time that it takes", tune_set);
+      add_action(tune, o, exit_code, "ramp", "Changes values by linear ramps", tune_set);
   ramp->add_option("NAME=VALUE", o->names, "As for set")->required();
-  add_time(*ramp, "--over", o->over, "The values move there in that time");
+  add_time(*ramp, "--over", o->over, "Duration of a linear ramp to the values");
   ramp->get_option("--over")->required();
   add_common(ramp);
   ramp->footer("Example: footfall tune ramp goal.x=0.5m --over 3s");
   for (const bool redo : {false, true}) {
     CLI::App* command = add_action(
         tune, o, exit_code, redo ? "redo" : "undo",
-        redo ? "Makes the change that was undone last again"
-             : "Takes the newest change back, whoever made it",
+        redo ? "Redoes the change that was undone last" : "Undoes the newest change, by any user",
         redo ? +[](const TuneOptions& options) { return tune_undo(options, true); }
              : +[](const TuneOptions& options) { return tune_undo(options, false); });
-    command->add_option("N", o->count, "How many")->check(CLI::Range(1, 1000));
+    command->add_option("N", o->count, "Number of changes")->check(CLI::Range(1, 1000));
     command->add_flag("--json", o->json, "Each answer as a JSON object");
   }
   CLI::App* raise =
@@ -101,30 +100,31 @@ void add_views(CLI::App& tune, const Options& o, int& exit_code) {
                              "NAME=VALUE lines, exact, as `set` takes them", tune_get);
   get->add_option("NAME", o->names, "Names or patterns")->required();
   get->add_flag("--json", o->json, "One JSON object, values in SI");
-  CLI::App* diff =
-      add_action(tune, o, exit_code, "diff", "What differs from the behavior's file", tune_diff);
+  CLI::App* diff = add_action(tune, o, exit_code, "diff",
+                              "Values that differ from the behavior's file", tune_diff);
   diff->add_flag("--json", o->json, "One JSON object, values in SI");
   CLI::App* watch =
       add_action(tune, o, exit_code, "watch",
-                 "Prints signals and values as they come, and everybody's edits", tune_watch);
+                 "Prints signals and values as they arrive, and all users' edits", tune_watch);
   watch->add_option("NAME", o->names, "Signals, parameters, gains; patterns");
   watch->add_flag("--json", o->json, "One JSON object a line");
-  add_time(*watch, "--for", o->duration, "Ends after that time (otherwise with Ctrl-C)");
-  add_time(*watch, "--every", o->every, "At most one line in that time");
+  add_time(*watch, "--for", o->duration, "Duration (default: until Ctrl-C)");
+  add_time(*watch, "--every", o->every, "Minimum time between lines");
   watch->footer("Example: footfall tune watch com.pos.z lift_time --every 100ms");
 }
 
 void add_files(CLI::App& tune, const Options& o, int& exit_code) {
   CLI::App* save = add_action(tune, o, exit_code, "save",
-                              "Writes the values in force into the behavior's file", tune_save);
+                              "Saves the current values to the behavior's file", tune_save);
   save->add_option("NAME", o->names, "Only these; names or patterns");
-  save->add_option("--to", o->file,
-                   "Into this file: an overlay, which begins with `base:`, or one that is there");
-  save->add_flag("--yes", o->yes, "Does not ask");
+  save->add_option(
+      "--to", o->file,
+      "Writes to this file: a new overlay, which begins with `base:`, or an existing one");
+  save->add_flag("--yes", o->yes, "Writes without asking");
   save->add_flag("--dry-run", o->dry_run, "Shows what would change, writes nothing");
   save->footer("Example: footfall tune save --to mine.yaml");
   CLI::App* key = add_action(tune, o, exit_code, "key",
-                             "Makes a key for people on other machines or accounts", tune_key);
+                             "Creates a key for users of other machines or accounts", tune_key);
   key->add_option("FILE", o->file, "A new file; only its owner may read it")->required();
   key->footer("Example: footfall tune key ~/robot.key");
 }
@@ -136,12 +136,12 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   CLI::App* tune = app.add_subcommand(
       "tune", "Changes parameters and gains of a run with --lcm: full screen, or a sub-command");
   tune->require_subcommand(0, 1);
-  tune->add_option("--url", o->url, "LCM URL (default: this host alone, as `run --lcm`)");
+  tune->add_option("--url", o->url, "LCM URL (default: only this host, as `run --lcm`)");
   tune->add_option("--key", o->key, "File with the key (default: the user's own)");
   tune->add_flag("--open", o->open, "Without a key, for `run --lcm-open`");
-  tune->add_option("--prefix", o->prefix, "Of the channels, as `run --lcm-prefix`")
+  tune->add_option("--prefix", o->prefix, "Prefix of the channel names, as `run --lcm-prefix`")
       ->capture_default_str();
-  tune->add_option("--who", o->who, "What others and the log call you (default: user@host)");
+  tune->add_option("--who", o->who, "Your name for other users and the log (default: user@host)");
   add_time(*tune, "--timeout", o->timeout, "How long to wait for an answer (default 3 s)");
   add_views(*tune, o, exit_code);
   add_edits(*tune, o, exit_code);

@@ -1,4 +1,4 @@
-// Values in force back into the behavior's file; see save.h.
+// Saves current values to the behavior's file; see save.h.
 #include "apps/tune/save.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Values in force back into the behavior's file, for the sub-command and the full screen.
+// Saves current values to the behavior's file, for the sub-command and the full screen.
 #pragma once
 
 #include <string>
@@ -9,19 +9,19 @@
 
 namespace footfall::apps {
 
-// What saving these parameters would write, or why it cannot.
+// The changes that saving parameters would make, or the reasons why it is impossible.
 struct TuneSave {
   behaviors::SavePlan plan;
-  std::string diff;                   // as `diff -u` shows it; empty: nothing changes
-  std::vector<std::string> problems;  // for people; not empty: nothing can be written
+  std::string diff;                   // in the format of `diff -u`; empty if nothing changes
+  std::vector<std::string> problems;  // as text; nothing is written unless empty
 };
 
-// `parameters`: indices into model.parameters; those that have the file's value already change
-// nothing. `overlay` (not empty): into that file instead of where the values come from. Reads the
-// behavior's file: it must be on this host.
+// `parameters`: indices into model.parameters; those with the file's value change nothing.
+// `overlay` (if not empty): write to that file instead of the files that define the values. Reads
+// the behavior's file, which must be on this host.
 TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
                         const std::string& overlay);
-// Writes it and says where, one file a line; `problems` if it cannot be.
+// Writes the changes and returns the written files, one a line; `problems` on failure.
 std::vector<std::string> write_tune_save(const TuneSave& save, std::vector<std::string>& problems);
 
 }  // namespace footfall::apps

@@ -1,4 +1,4 @@
-// `footfall tune` on a terminal: what comes from the engine and from the keys, drawn.
+// `footfall tune` on a terminal: event loop for the engine, the keys and the screen.
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -28,11 +28,11 @@ struct Screen {
   TuneOutbox outbox;
   TuneView view;
   TuneSave save;
-  std::int64_t under_way = 0;  // sequence of the request that waits for its answer; 0: none
+  std::int64_t under_way = 0;  // sequence number of the pending request; 0: none
   std::int64_t run = 0, generation = 0;
 };
 
-// The first that people look at, of those that there are.
+// The preferred signal for the plot, among those available.
 std::string first_signal(const TuneModel& model) {
   for (const char* name : {"com.pos.z", "base.pos.z", "base.rpy.pitch"}) {
     if (find_signal(model, name) >= 0) return name;
@@ -58,7 +58,7 @@ void begin_run(Screen& screen) {
   }
 }
 
-// What arrived, and what there is to send.
+// Receives messages and sends pending requests.
 void exchange(Screen& screen) {
   TuneSession& session = screen.session;
   const auto answers = take_messages(session, 0.0);
@@ -109,7 +109,7 @@ void write_save(Screen& screen) {
   read_file_values(screen.session.model);
 }
 
-// False: it is over.
+// Executes a command; false to quit.
 bool obey(Screen& screen, TuneTerminal& terminal, TuneCommand command) {
   switch (command) {
     case TuneCommand::none:
@@ -172,7 +172,7 @@ void run_screen(Screen& screen, TuneTerminal& terminal) {
 }  // namespace
 
 int tune_screen(const TuneOptions& options) {
-  // First, so that a script learns it without an engine.
+  // Checked first, so that a script gets the error without an engine.
   if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0) {
     throw InputError(
         "error: the full screen needs a terminal; in scripts: footfall tune list, get, set ... "

@@ -1,4 +1,4 @@
-// An engine and the picture of it; see session.h.
+// A connection to an engine; see session.h.
 #include "apps/tune/session.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// An engine and the picture of it: what comes over the network goes into the model.
+// A connection to an engine: messages from the network update the model.
 #pragma once
 
 #include <memory>
@@ -18,17 +18,18 @@ struct TuneSession {
   TuneModel model;
 };
 
-// Connected, catalogue and values in the model; nullptr: nobody answers, said on stderr with what
-// to check. Throws InputError for a URL, prefix or key that cannot be.
+// Connects and waits for catalogue and values; nullptr if no engine answers, with advice on stderr.
+// Throws InputError for an invalid URL, prefix or key.
 std::unique_ptr<TuneSession> open_session(const TuneOptions& options);
-// Waits at most `seconds` for messages and takes them; the answers that came.
+// Waits at most `seconds` for messages and applies them; returns the answers.
 std::vector<footfall_lcm::answer_t> take_messages(TuneSession& session, double seconds);
-// Sends and waits until the timeout. Prints what became of it (reasons on stderr); the exit code.
+// Sends a request and waits until the timeout. Prints the result (reasons on stderr); returns the
+// exit code.
 int send_and_explain(TuneSession& session, const footfall_lcm::request_t& request,
                      const TuneOptions& options);
 
-// Reads the behavior's file again for the values that it has; what cannot be read keeps what the
-// engine began with (false).
+// Reads the behavior's file again for its values; on failure (false) the engine's initial values
+// are kept.
 bool read_file_values(TuneModel& model);
 
 }  // namespace footfall::apps

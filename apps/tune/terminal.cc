@@ -1,4 +1,4 @@
-// The terminal as a place for pictures and keys; see terminal.h.
+// Terminal output and keyboard input; see terminal.h.
 #include "apps/tune/terminal.h"
 
 #include <langinfo.h>
@@ -11,7 +11,7 @@
 #include <cwchar>
 #include <stdexcept>
 
-// The last of all: its macros have everyday names.
+// Included last, because its macros have common names.
 #define NCURSES_NOMACROS 1
 #define NCURSES_WIDECHAR 1
 #include <curses.h>
@@ -21,9 +21,9 @@ namespace {
 
 volatile std::sig_atomic_t told_to_stop = 0;
 
-// Colour pairs by style; 0: the terminal's own.
+// Colour pairs by style; 0: the terminal's default.
 struct Look {
-  short colour;  // -1: the terminal's
+  short colour;  // -1: the terminal's default
   attr_t attributes;
 };
 

@@ -1,5 +1,4 @@
-// The terminal as a place for pictures and keys: ncurses, in and out. Whatever ends the program,
-// the terminal is as it was before.
+// Terminal output and keyboard input with ncurses. Restores the terminal however the program ends.
 #pragma once
 
 #include <optional>
@@ -11,7 +10,7 @@ namespace footfall::apps {
 
 class TuneTerminal {
  public:
-  // Throws std::runtime_error for a terminal that cannot be drawn on; stdin and stdout must be one.
+  // Throws std::runtime_error if the terminal cannot be controlled; stdin and stdout must be one.
   TuneTerminal();
   ~TuneTerminal();
   TuneTerminal(const TuneTerminal&) = delete;
@@ -21,11 +20,11 @@ class TuneTerminal {
   int height() const;
   bool unicode() const { return unicode_; }
   void show(const Picture& picture);
-  // Everything is drawn anew by the next show().
+  // Forces the next show() to redraw everything.
   void forget();
-  // The next key that was pressed; none: no more at the moment.
+  // The next pressed key; nullopt if there is none.
   std::optional<TuneKey> key();
-  // SIGINT, SIGTERM or SIGHUP came: time to leave.
+  // Whether SIGINT, SIGTERM or SIGHUP was received.
   static bool is_told_to_stop();
 
  private:

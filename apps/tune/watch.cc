@@ -1,4 +1,4 @@
-// `footfall tune watch`: signals and values as they come, and everybody's edits.
+// `footfall tune watch`: prints signals and values as they arrive, and all users' edits.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -16,7 +16,7 @@ namespace {
 
 volatile std::sig_atomic_t stop_watching = 0;
 
-// Puts the old ones back when it goes.
+// Restores the previous handlers on destruction.
 class StopSignals {
  public:
   StopSignals() {
@@ -25,7 +25,7 @@ class StopSignals {
     ::sigaction(SIGINT, &action, &interrupt_);
     ::sigaction(SIGTERM, &action, &terminate_);
     ::sigaction(SIGPIPE, nullptr, &pipe_);
-    ::signal(SIGPIPE, SIG_IGN);  // `| head` ends it, without a message
+    ::signal(SIGPIPE, SIG_IGN);  // end silently when piped to `head`
   }
   ~StopSignals() {
     ::sigaction(SIGINT, &interrupt_, nullptr);
@@ -44,7 +44,7 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// False: nobody reads any more.
+// Prints; false if the reader closed the pipe.
 bool print_out(const std::string& text) {
   return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
 }
@@ -56,12 +56,12 @@ std::string json_line(const nlohmann::ordered_json& json) {
 struct Watch {
   std::vector<WatchColumn> columns;
   bool json = false;
-  double every = 0.0;       // s of the run between lines
-  double next_line = -1.0;  // s of the run
+  double every = 0.0;       // s of run time between lines
+  double next_line = -1.0;  // s of run time
   std::int64_t session = 0, generation = 0;
 };
 
-// The samples and edits that came, in lines.
+// Prints received samples and edits as lines.
 bool print_samples(TuneSession& session, Watch& watch) {
   TuneModel& model = session.model;
   const std::size_t notes = model.notes.size();
@@ -86,7 +86,8 @@ bool print_samples(TuneSession& session, Watch& watch) {
   return good;
 }
 
-// The columns of the engine's catalogue; false: a name is not in it, said on stderr.
+// Sets up the columns from the engine's catalogue; false after an error message about an unknown
+// name.
 bool begin_columns(const TuneModel& model, const TuneOptions& options, Watch& watch) {
   std::vector<std::string> problems;
   watch.columns = watch_columns(model, options.names, problems);

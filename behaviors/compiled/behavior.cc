@@ -1,4 +1,4 @@
-// Look-ups by name, for outside the tick; see behavior.h.
+// Look-ups by name, not for the tick; see behavior.h.
 #include "behaviors/compiled/behavior.h"
 
 #include <algorithm>

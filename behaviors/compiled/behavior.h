@@ -25,10 +25,10 @@ struct TaskInstance {
   std::string name;
   tasks::TaskType type = tasks::TaskType::com_position;
   int point = -1;   // index into the model's points (contacts first, then points of the robot file)
-  int signals = 0;  // index into SignalLayout::task: tasks of one name share their signals
+  int signals = 0;  // index into SignalLayout::task: tasks of the same name share their signals
 };
 
-// A file of Lua, as it was read at load: a run works with this text.
+// A Lua file as read at load; a run uses this text.
 struct ScriptFile {
   std::string path;
   std::string text;
@@ -38,9 +38,9 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 struct PlannerInfo {
   std::string name;
-  FootPlannerSpec spec;      // its kappa: unless kappa_parameter says where it is
-  int kappa_parameter = -1;  // into Behavior::parameters, one value or one for each of x y
-  int kappa_slot = -1;       // of that parameter's first value
+  FootPlannerSpec spec;      // its kappa is used only without kappa_parameter
+  int kappa_parameter = -1;  // index into Behavior::parameters, one value or one for each of x y
+  int kappa_slot = -1;       // slot of that parameter's first value
   int kappa_size = 0;
   int goal_slot = -1;        // parameter slot of the goal's x (y follows); -1: constant
   std::vector<double> goal;  // constant goal
@@ -48,25 +48,25 @@ struct PlannerInfo {
   core::Mark mark;  // of `kappa`, else of the planner's name
 };
 
-// The statechart's arrays (Chart) and, with a robot, what it controls.
+// The statechart's arrays (Chart) and, with a robot, its control.
 struct Behavior : Chart {
   std::string name;  // of the file, without folder and extension
   std::string path;
-  std::vector<std::string> files;  // all that were read for it: its own, bases, robot
+  std::vector<std::string> files;  // all files read: its own, bases, robot
   bool has_robot = false;          // false: a pure statechart
   model::RobotDescription robot;
 
-  core::SignalTable signals;  // prototype: names, units, zeros; a run copies it
+  core::SignalTable signals;  // prototype with names, units, zeros; copied by each run
   SignalLayout layout;
 
-  std::vector<ParameterInfo> parameters;  // gains too
+  std::vector<ParameterInfo> parameters;  // including gains
   std::vector<double> values;             // initial values, by slot
 
   std::vector<ControlSpec> controls;  // by Statechart::control()
   std::vector<TaskSpec> tasks;
   std::vector<AxisSpec> axes;
   std::vector<WaypointSpec> waypoints;
-  // Least and largest kp, ki, kd that an expression may give: 0 or more, or gains.ranges.
+  // Minimum and maximum of kp, ki, kd given by expressions: 0 or more, or gains.ranges.
   std::array<std::array<double, 2>, 3> gain_limits = {
       {{0.0, kUnlimited}, {0.0, kUnlimited}, {0.0, kUnlimited}}};
   std::vector<InternalSpec> internals;
@@ -80,18 +80,18 @@ struct Behavior : Chart {
   std::vector<PlannerInfo> planners;
   std::vector<InvokeInfo> invokes;
   std::vector<ScriptFile> scripts;
-  std::int64_t script_instructions = 0;  // of one call; 0: the usual bound
+  std::int64_t script_instructions = 0;  // limit for one call; 0: default
 
-  int step = -1;                                      // index of the mark `step`, -1: it marks none
+  int step = -1;                                      // index of the mark `step`, -1 if not used
   std::vector<int> touchdown_events, liftoff_events;  // by contact
   std::vector<int> fault_events;                      // by core::Fault
   std::vector<int> changed_events;                    // by parameter, parameter.changed.NAME
-  bool watches_parameters = false;                    // some transition listens to those
+  bool watches_parameters = false;                    // whether a transition listens to these
 
   int find_event(std::string_view event) const;
   int find_state(std::string_view path) const;  // by full dotted path
   int find_parameter(std::string_view parameter) const;
-  // `goal`, or one of its values: `goal.y`.
+  // `goal`, or one of its components: `goal.y`.
   ParameterPart find_parameter_part(std::string_view name) const;
 };
 

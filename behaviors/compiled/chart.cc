@@ -1,4 +1,4 @@
-// Questions about a chart's structure; see chart.h.
+// Queries of a chart's structure; see chart.h.
 #include "behaviors/compiled/chart.h"
 
 #include <algorithm>
@@ -33,14 +33,14 @@ bool Chart::event_matches(std::string_view pattern, std::string_view event) {
 
 namespace {
 
-// By letters, the dot before all others: an event, all below it, then the rest.
+// Alphabetical with the dot first: an event is followed by all events below it.
 bool goes_before(std::string_view a, std::string_view b) {
   const auto weight = [](char c) { return c == '.' ? 0 : 1 + static_cast<unsigned char>(c); };
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
                                       [&weight](char x, char y) { return weight(x) < weight(y); });
 }
 
-// The stretch of sorted events that a pattern names.
+// The range of sorted events that match a pattern.
 Range stretch_of(std::string_view pattern, const std::vector<std::string_view>& sorted) {
   if (pattern == "*") return {0, static_cast<int>(sorted.size())};
   const std::string_view stem =
@@ -70,7 +70,7 @@ void Chart::match_events() {
   }
   heard_events.assign(transitions.size(), {});
   heard_ranks.clear();
-  for (const EventPattern& pattern : patterns) {  // those of a transition follow each other
+  for (const EventPattern& pattern : patterns) {  // those of one transition are contiguous
     Range& own = heard_events[static_cast<std::size_t>(pattern.transition)];
     if (own.count++ == 0) own.first = static_cast<int>(heard_ranks.size());
     heard_ranks.push_back(stretch_of(pattern.text, sorted));

@@ -1,6 +1,6 @@
 // A statechart as flat arrays, built at load and immutable in the tick. States are numbered in
-// document order (a state, then its children): a smaller index is earlier in the document, and the
-// descendants of `s` are exactly the indices s+1 .. states[s].end-1.
+// document order (a state, then its children): the descendants of `s` are exactly the indices s+1
+// .. states[s].end-1.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace footfall::behaviors {
 
-// A stretch of another flat array.
+// A range of another flat array.
 struct Range {
   int first = 0;
   int count = 0;
@@ -35,14 +35,14 @@ enum class DoneRule : std::uint8_t { all, any, region };
 
 struct StateInfo {
   std::string name;
-  std::string path;  // dotted, from below the root; the root's is its own name
+  std::string path;  // dotted, without the root; for the root its own name
   std::string doc;
   core::Mark mark;
   int parent = -1;
   int end = 0;    // one past its last descendant
-  int depth = 0;  // of the root 0
+  int depth = 0;  // 0 for the root
   StateKind kind = StateKind::atomic;
-  Range initial;      // into Chart::targets: compound: its default entry; history: its default
+  Range initial;      // into Chart::targets: default entry; `default` of a history state
   Range transitions;  // into Chart::transitions, in document order
   Range on_entry;     // into Chart::actions
   Range on_exit;
@@ -51,26 +51,26 @@ struct StateInfo {
   DoneRule done = DoneRule::all;
   int done_region = -1;
   int history = -1;        // slot of a history state
-  int control_weight = 0;  // the sum over active states is the index into Behavior::controls
-  bool reload = false;     // while it is active a changed file may take over
+  int control_weight = 0;  // the sum over active states is an index into Behavior::controls
+  bool reload = false;     // a changed file may be loaded while it is active
 };
 
 struct TransitionInfo {
   core::Mark mark;
   int source = 0;
-  Range targets;           // into Chart::targets; none: actions only, no exit, no entry
+  Range targets;           // into Chart::targets; empty: actions only, no exit, no entry
   bool has_event = false;  // false: event-less
   int guard = -1;          // expression, -1: none
   int after = -1;          // expression of a time, -1: none
   bool internal = false;
-  int domain = -1;  // precomputed; -1: no targets, or a history target (then at run time)
+  int domain = -1;  // precomputed; -1: no targets, or a history target (computed at run time)
   Range actions;
   std::string reason;
 };
 
 enum class ActionKind : std::uint8_t { raise, set, log, mark, call };
 
-// What a registered C++ function may touch in the tick: it reads signals and reads and writes
+// Interface of a registered C++ function in the tick: it reads signals and reads and writes
 // parameters. It must be realtime-safe. False raises error.execution and skips the rest of the
 // list.
 struct NativeCall {
@@ -80,14 +80,14 @@ struct NativeCall {
 };
 using NativeFunction = bool (*)(NativeCall& call) noexcept;
 
-// A function that `call:` names: in C++, run at once; without it one of a script, run outside of
-// the tick.
+// A function named by `call:`: in C++, run at once; otherwise a script function, run outside of the
+// tick.
 struct CallInfo {
   std::string name;
   NativeFunction native = nullptr;
 };
 
-// What a tick asks of the scripts: to call a function, or to handle an event.
+// A request of a tick to the scripts: to call a function, or to handle an event.
 struct ScriptRequest {
   bool is_event = false;
   int index = 0;  // into Chart::events or Chart::calls
@@ -95,13 +95,13 @@ struct ScriptRequest {
 
 struct ActionInfo {
   ActionKind kind = ActionKind::raise;
-  int index = 0;        // event, parameter's slot, text, mark or call
-  int expression = -1;  // of `set`
-  double min = 0.0;     // of `set`: range, equal: none
+  int index = 0;        // of the event, parameter slot, text, mark or call
+  int expression = -1;  // for `set`
+  double min = 0.0;     // for `set`: range; equal: unlimited
   double max = 0.0;
 };
 
-// `log: TEXT`: literal pieces around the values of expressions.
+// `log: TEXT`: literal pieces between the values of expressions.
 struct LogText {
   std::vector<std::string> pieces;  // one more than expressions
   std::vector<int> expressions;
@@ -118,7 +118,7 @@ struct EventPattern {
 
 struct Chart {
   std::int64_t rate_mhz = 1'000'000;  // ticks per second, in millihertz
-  int micro_steps = 64;               // bound in one tick
+  int micro_steps = 64;               // limit in one tick
   ExpressionPool expressions;
   std::vector<StateInfo> states;  // [0] is the root
   std::vector<TransitionInfo> transitions;
@@ -129,12 +129,12 @@ struct Chart {
   std::vector<CallInfo> calls;
   std::vector<std::string> events;
   std::vector<EventPattern> patterns;
-  // Which events enable which transition. In the order of event_ranks, what a pattern names lies
-  // together: a stretch of ranks for each pattern, and for each transition its stretches.
+  // Which events enable which transition. In the order of event_ranks the events of a pattern are
+  // contiguous: one range of ranks for each pattern, and for each transition its ranges.
   std::vector<int> event_ranks;             // by event
-  std::vector<Range> heard_ranks;           // of ranks, transition by transition
-  std::vector<Range> heard_events;          // by transition: into heard_ranks
-  std::vector<std::uint8_t> script_events;  // by event: a script handles it; empty: none
+  std::vector<Range> heard_ranks;           // ranges of ranks, transition by transition
+  std::vector<Range> heard_events;          // by transition: range of heard_ranks
+  std::vector<std::uint8_t> script_events;  // by event: whether a script handles it; empty: none
   int safe_transition = -1;                 // to the root's `safe` state, -1: none
   int history_count = 0;
   int error_execution = -1;  // event id
@@ -153,21 +153,22 @@ struct Chart {
     }
     return false;
   }
-  // Fills event_ranks and what is heard from the patterns, for all events there are.
+  // Computes event_ranks and the heard_ arrays from the patterns, for all known events.
   void match_events();
   // The innermost compound state, or the root, that properly contains `source` and all targets.
   // Source: W3C SCXML 1.0, Appendix D, getTransitionDomain and findLCCA.
   int domain_of(const TransitionInfo& transition, const int* first_target, int count) const;
-  // Whether `event` is `pattern`, lies below it (`fault.*`: `fault` and all below), or it is `*`.
+  // Whether `event` equals `pattern`, or is matched by a prefix (`fault.*`: `fault` and all below),
+  // or it is `*`.
   static bool event_matches(std::string_view pattern, std::string_view event);
 };
 
-// Neither state contains the other, and both can be active at once.
+// Whether two states can be active at once, and neither contains the other.
 bool active_together(const Chart& chart, int a, int b);
 
-// Number of whole periods that `seconds` lasts: ceil(D * rate) with D rounded to nanoseconds, in
-// whole numbers, so that 16 ms at 1500 Hz is 24 always. -1 if D is negative, not finite or above
-// 10^6 s.
+// Duration of `seconds` in whole periods: ceil(D * rate) with D rounded to nanoseconds, in integer
+// arithmetic, so that 16 ms at 1500 Hz is always 24. -1 if D is negative, not finite or above 10^6
+// s.
 std::int64_t periods_of(double seconds, std::int64_t rate_mhz) noexcept;
 
 }  // namespace footfall::behaviors

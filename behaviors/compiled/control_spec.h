@@ -1,4 +1,4 @@
-// What a configuration of the statechart controls: compiled tasks, references and contacts as flat
+// The control of a statechart's configurations: compiled tasks, references and contacts as flat
 // arrays, one ControlSpec for each combination of states that differ in control.
 #pragma once
 
@@ -11,12 +11,12 @@
 
 namespace footfall::behaviors {
 
-// One axis of a task. Gains are slots of the parameter array, -1 for 0; the rest are expressions,
-// -1: the default of tasks::AxisCommand.
+// One axis of a task. Gains are slots of the parameter array, -1 for 0; the others are expressions,
+// -1 for the default of tasks::AxisCommand.
 struct AxisSpec {
   int axis = 0;
   int kp = -1, ki = -1, kd = -1;
-  std::array<int, 3> computed{-1, -1, -1};  // kp, ki, kd that are expressions, where no slot is
+  std::array<int, 3> computed{-1, -1, -1};  // expressions for kp, ki, kd without slot
   int weight = -1;
   int acceleration_limit = -1;
   int integral_limit = -1;
@@ -24,34 +24,34 @@ struct AxisSpec {
   int end_velocity = -1;  // trajectories, -1: 0
   int radius = -1;        // ellipse: expression, -1: 0
   int phase = -1;         // ellipse: expression, -1: 0
-  core::Mark mark;        // of its entry in `axes` or `joints`, else of these, else of the task
-  core::Mark value_mark;  // of what `value` was compiled from
+  core::Mark mark;        // of its item in `axes` or `joints`, else of the list, else of the task
+  core::Mark value_mark;  // position of the source of `value`
 };
 
-// A point that a trajectory passes: when, and where.
+// A point passed by a trajectory: time and position.
 struct WaypointSpec {
   int at = -1;  // expression of a time; -1: `part` of the trajectory's `over`
   double part = 1.0;
-  bool after_previous = false;  // `at` counts from the point before, not from the start
-  std::vector<int> to;          // expressions by axis of the task, -1: not this axis
+  bool after_previous = false;  // `at` counts from the previous point, not from the start
+  std::vector<int> to;          // expressions by axis of the task, -1: axis not included
 };
 
-// Where a task's reference comes from. `owner` is the state whose entry starts a trajectory.
+// Source of a task's reference. `owner` is the state whose entry starts a trajectory.
 struct ReferenceSpec {
   enum class Kind : std::uint8_t { none, value, trajectory };
   Kind kind = Kind::none;
   Shape shape = Shape::hold;
   int owner = 0;
-  // Its words in the file and their owner: a task whose other keys change keeps its trajectory.
+  // Identifies its YAML and owner: a task whose other keys change keeps its trajectory.
   int source = -1;
   int over = -1;  // expression of a time; ellipse, surface: of the centre, of the height above
   core::Mark over_mark;
   int period = -1;         // ellipse: expression of a time
   int ramp = -1;           // ellipse: expression of a time, -1: one period
-  double direction = 1.0;  // ellipse: 1 from its first axis towards the others, -1 back
+  double direction = 1.0;  // ellipse: 1 from its first axis towards the others, -1 reverse
   Range waypoints;         // into Behavior::waypoints
-  // Part of the trajectory's time during which it follows a changing `to`; 0: never. Following to
-  // the very end would ask for accelerations without bound. `retarget: true` is 80 %.
+  // Fraction of the trajectory's time during which it follows a changing `to`; 0: never. Following
+  // until the very end would require unbounded accelerations. `retarget: true` is 80 %.
   double retarget = 0.0;
 };
 
@@ -78,11 +78,11 @@ struct InternalSpec {
 // A torque-continuous change of the contact set.
 struct TransitionSpec {
   int owner = 0;       // state that declares it
-  bool loads = false;  // else releases
+  bool loads = false;  // otherwise releases
   int over = -1;       // expression of a time
   int toward = -1;     // index into Behavior::controls
   tasks::TransitionForm form = tasks::TransitionForm::continuous;
-  std::vector<int> contacts;  // that move
+  std::vector<int> contacts;  // that are released or loaded
 };
 
 struct ControlSpec {
@@ -90,10 +90,10 @@ struct ControlSpec {
   Range tasks;                    // into Behavior::tasks, by priority, then in document order
   Range internals;                // into Behavior::internals
   int transition = -1;            // into Behavior::contact_transitions
-  std::vector<int> torque_loops;  // by joint: index into Behavior::torque_loops, -1: as it is
+  std::vector<int> torque_loops;  // by joint: index into Behavior::torque_loops, -1: unchanged
 };
 
-// Gains of the actuators' own torque loop, by joint; NaN where the table says nothing.
+// Gains of the actuators' own torque loop, by joint; NaN if not in the table.
 struct TorqueLoopTable {
   std::string name;
   std::vector<double> p, i, d;
@@ -101,15 +101,15 @@ struct TorqueLoopTable {
 
 // One `invoke` of a planner.
 struct InvokeInfo {
-  core::Mark at_mark;  // of when it is asked
+  core::Mark at_mark;  // of the key that defines when it is asked
   int state = 0;
   int planner = 0;
   int at = -1;                  // expression of a time in the state; -1: at_fraction of `after`
-  double at_fraction = 0.0;     // with after >= 0
+  double at_fraction = 0.0;     // if after >= 0
   int after = -1;               // expression of the state's own duration
   int every = -1;               // expression of a time; -1: asked once
   int deadline = -1;            // expression of a time; -1: none
-  bool closed_form = false;     // what a late plan is replaced by, else the last one stays
+  bool closed_form = false;     // replaces a late plan; otherwise the last plan is kept
   int stance = -1, swing = -1;  // contact indices
   int switch_in = -1;           // expression of a time
   core::Mark mark;

@@ -20,7 +20,7 @@ int add_axes(core::SignalTable& table, const std::string& name, Dimension dimens
 }
 
 void add_body(core::SignalTable& table, SignalLayout& layout) {
-  layout.time = table.add("time", core::kTime, "since start");
+  layout.time = table.add("time", core::kTime, "time since the start");
   layout.com_pos = add_axes(table, "com.pos", core::kLength, "centre of mass, world");
   layout.com_vel = add_axes(table, "com.vel", core::kVelocity, "its velocity, world");
   layout.com_ref = add_axes(table, "com.ref", core::kLength, "its reference, world");
@@ -43,16 +43,17 @@ void add_robot(const model::RobotDescription& robot, core::SignalTable& table,
         table.add("contact." + contact.name, core::kNone, "1 while its switch is closed"));
   }
   for (const auto& contact : robot.contacts) {
-    layout.support.push_back(
-        table.add("support." + contact.name, core::kNone, "1 while the control law counts on it"));
+    layout.support.push_back(table.add("support." + contact.name, core::kNone,
+                                       "1 while in the contact set of the control law"));
   }
   for (const auto& contact : robot.contacts) {
-    layout.force.push_back(
-        add_axes(table, "force." + contact.name, core::kForce, "measured, ground on robot, world"));
+    layout.force.push_back(add_axes(table, "force." + contact.name, core::kForce,
+                                    "measured force, ground on robot, world"));
   }
   for (const auto& contact : robot.contacts) {
-    layout.force_cmd.push_back(add_axes(table, "force_cmd." + contact.name, core::kForce,
-                                        "as the control law predicts it, ground on robot, world"));
+    layout.force_cmd.push_back(
+        add_axes(table, "force_cmd." + contact.name, core::kForce,
+                 "force predicted by the control law, ground on robot, world"));
   }
   for (const auto& contact : robot.contacts) {
     layout.point.push_back(
@@ -91,14 +92,15 @@ TaskSignals add_task(const TaskName& task, core::SignalTable& table) {
     }
   };
   add_each("error", core::kNone, "reference minus measured", signals.axis_error);
-  add_each("reference", core::kNone, "what it should be", signals.axis_reference);
-  add_each("measured", core::kNone, "what it is", signals.axis_measured);
+  add_each("reference", core::kNone, "reference", signals.axis_reference);
+  add_each("measured", core::kNone, "measured value", signals.axis_measured);
   add_each("commanded", per, "commanded acceleration", signals.axis_commanded);
   add_each("achieved", per, "achieved acceleration, by the control model", signals.axis_achieved);
   signals.rank = table.add(name + ".rank", core::kNone, "rank of its priority level");
-  signals.condition = table.add(name + ".condition", core::kNone, "condition of its level");
-  signals.authority =
-      table.add(name + ".authority", core::kNone, "1: all its axes can be met, 0: none");
+  signals.condition =
+      table.add(name + ".condition", core::kNone, "condition number of its priority level");
+  signals.authority = table.add(name + ".authority", core::kNone,
+                                "feasible part of the commanded accelerations: 1 all, 0 none");
   return signals;
 }
 
@@ -108,11 +110,12 @@ PlannerSignals add_planner(const std::string& planner, core::SignalTable& table)
   signals.target = add_axes(table, name + ".target", core::kLength, "planned foothold, world");
   signals.predicted_pos = add_axes(table, name + ".predicted_pos", core::kLength,
                                    "centre of mass at the switch as predicted, world", {"x", "y"});
-  signals.predicted_vel = add_axes(table, name + ".predicted_vel", core::kVelocity,
-                                   "its velocity then, world", {"x", "y"});
-  signals.extension = table.add(name + ".extension", core::kTime,
-                                "by which the swing-time rule wants landing prolonged");
-  signals.switch_time = table.add(name + ".switch_time", core::kTime, "when the support changes");
+  signals.predicted_vel =
+      add_axes(table, name + ".predicted_vel", core::kVelocity,
+               "centre of mass velocity at the switch as predicted, world", {"x", "y"});
+  signals.extension =
+      table.add(name + ".extension", core::kTime, "landing delay requested by the swing-time rule");
+  signals.switch_time = table.add(name + ".switch_time", core::kTime, "time of the support change");
   signals.late = table.add(name + ".late", core::kNone, "1 while its last answer was late");
   return signals;
 }
@@ -130,23 +133,22 @@ SignalLayout register_signals(const model::RobotDescription& robot,
   for (const std::string& internal : internals) {
     const std::string name = "internal." + internal;
     layout.internal.push_back(
-        {table.add(name + ".reference", core::kForce, "internal force asked for"),
-         table.add(name + ".measured", core::kForce, "internal force measured")});
+        {table.add(name + ".reference", core::kForce, "internal force, reference"),
+         table.add(name + ".measured", core::kForce, "internal force, measured")});
   }
   for (const std::string& planner : planners) {
     layout.planner.push_back(add_planner(planner, table));
   }
-  layout.steps = table.add("steps", core::kNone, "steps marked by the behavior");
+  layout.steps = table.add("steps", core::kNone, "steps counted by `mark: step`");
   layout.state = table.add("state", core::kNone, "index of the first active atomic state");
   layout.transition_weight =
-      table.add("transition.weight", core::kNone, "of the other control law, 0 to 1");
-  layout.torque_step = table.add("torque.step", core::kTorque,
-                                 "largest torque step of a joint between neighbouring ticks");
+      table.add("transition.weight", core::kNone, "weight of the second control law, 0 to 1");
+  layout.torque_step =
+      table.add("torque.step", core::kTorque, "largest torque step of a joint between two ticks");
   layout.faults = table.add("faults", core::kNone, "faults counted so far");
-  layout.tick_late =
-      table.add("tick.late", core::kNone,
-                "periods skipped so far because a tick came too late; 0 in lock-step");
-  layout.goal = add_axes(table, "goal", core::kLength, "where it was told to stay", {"x", "y"});
+  layout.tick_late = table.add("tick.late", core::kNone,
+                               "periods skipped so far because a tick was late; 0 in lock-step");
+  layout.goal = add_axes(table, "goal", core::kLength, "target position", {"x", "y"});
   return layout;
 }
 

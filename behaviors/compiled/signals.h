@@ -1,5 +1,5 @@
-// Names, units and places of every signal of a robot and a behavior. The loader compiles
-// expressions against it, the engine fills it every tick, the log and the report read it.
+// Names, units and indices of all signals of a robot and a behavior. Used by the loader to compile
+// expressions, by the engine in every tick, by the log and the report.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@ namespace footfall::behaviors {
 
 // Indices of the rows of one task: task.NAME.*
 struct TaskSignals {
-  // Norm of the error over its axes; where lengths and angles meet (frame_pose), over the lengths.
+  // Norm of the error over its axes; of mixed lengths and angles (frame_pose) only over the
+  // lengths.
   int error = -1;
   std::vector<bool> in_norm;  // by axis
   int axis_count = 0;
@@ -24,7 +25,7 @@ struct TaskSignals {
   std::vector<int> axis_achieved;   // task.NAME.achieved.AXIS (acceleration, by the control model)
   int rank = -1;                    // rank of its level
   int condition = -1;               // condition estimate of its level
-  int authority = -1;               // 1: all commanded axes can be met, 0: none
+  int authority = -1;               // feasible part of the commanded accelerations: 1 all, 0 none
 };
 
 struct InternalSignals {
@@ -38,15 +39,15 @@ struct PlannerSignals {
   int predicted_vel = -1;  // x, y: CoM velocity at the switch as predicted, m/s, world
   int switch_time = -1;    // absolute time of the predicted switch, s
   int late = -1;
-  int extension = -1;  // s, by which the swing-time rule wants landing prolonged
+  int extension = -1;  // s, landing delay requested by the swing-time rule
 };
 
-// A task as named by a behavior: name and the axes it may have.
+// A task name of a behavior and the axes that it may have.
 struct TaskName {
   std::string name;
   std::vector<std::string> axes;
   std::vector<core::Dimension> dimensions;  // of the axes
-  bool momentum = false;                    // a rate: what is commanded is its first derivative
+  bool momentum = false;                    // a rate: its first derivative is commanded
 };
 
 // Layout of the table. All `xyz` members are the index of x; y and z follow.
@@ -61,24 +62,24 @@ struct SignalLayout {
   int base_angvel = -1;          // base.angvel.{x,y,z}, rad/s, base frame
   int centroidal_momentum = -1;  // centroidal.{linear.x..z, angular.x..z}
   std::vector<int> contact;      // contact.NAME: 1 while the switch is closed
-  std::vector<int> support;      // support.NAME: 1 while the control law counts on it
+  std::vector<int> support;      // support.NAME: 1 while in the contact set of the control law
   std::vector<int> force;        // force.NAME.{x,y,z}: measured, ground on robot, N, world
-  std::vector<int> force_cmd;    // force_cmd.NAME.{x,y,z}: as the control law predicts it
+  std::vector<int> force_cmd;    // force_cmd.NAME.{x,y,z}: predicted by the control law
   std::vector<int> point;        // point.NAME.{x,y,z}: contacts first, then points; m, world
   std::vector<int> joint;        // joint.NAME.{position,velocity,torque,command}: 4 in a row
   std::vector<TaskSignals> task;
   std::vector<InternalSignals> internal;
   std::vector<PlannerSignals> planner;
-  int steps = -1;              // steps marked by the behavior
+  int steps = -1;              // steps counted by the behavior's marks
   int state = -1;              // index of the first active atomic state in document order
-  int transition_weight = -1;  // of the other control law, 0..1
+  int transition_weight = -1;  // of the second control law, 0..1
   int torque_step = -1;        // largest |tau - tau_previous| over joints, N m
   int faults = -1;             // faults counted so far
-  int tick_late = -1;          // periods skipped so far because a tick came too late
-  int goal = -1;               // goal.{x,y}: where it was told to stay, m
+  int tick_late = -1;          // periods skipped so far because a tick was late
+  int goal = -1;               // goal.{x,y}: target position, m
 };
 
-// Registers everything; deterministic order.
+// Registers all signals in a deterministic order.
 SignalLayout register_signals(const model::RobotDescription& robot,
                               const std::vector<TaskName>& tasks,
                               const std::vector<std::string>& internals,

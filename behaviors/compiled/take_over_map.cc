@@ -1,4 +1,4 @@
-// What goes on where when one behavior takes another's place; see take_over_map.h.
+// Correspondence between two behaviors for bumpless transfer; see take_over_map.h.
 #include "behaviors/compiled/take_over_map.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ bool is_state_of_old(const std::vector<int>& map, int state) {
   return std::ranges::find(map, state) != map.end();
 }
 
-// Every region of the new parallel state goes on from one of the old.
+// Whether every region of the new parallel state continues one of the old.
 bool same_regions(const Chart& to, int state, const std::vector<int>& map) {
   for (int c = state + 1; c < to.states[at(state)].end; c = to.states[at(c)].end) {
     if (to.states[at(c)].history < 0 && !is_state_of_old(map, c)) return false;
@@ -66,7 +66,7 @@ std::vector<int> map_signals(const Behavior& from, const Behavior& to) {
   return map;
 }
 
-// One value for all serves each of several.
+// A single old value initialises all values of a vector.
 std::vector<int> map_slots(const Behavior& from, const Behavior& to) {
   std::vector<int> map(to.values.size(), -1);
   std::unordered_map<std::string, int> by_name;
@@ -85,7 +85,7 @@ std::vector<int> map_slots(const Behavior& from, const Behavior& to) {
   return map;
 }
 
-// Whether two compiled expressions compute the same from the same.
+// Whether two compiled expressions compute the same value from the same inputs.
 bool same_expression(const Behavior& from, int a, const Behavior& to, int b,
                      const TakeOverMap& map) {
   const Expression& old = from.expressions[a];

@@ -1,5 +1,6 @@
-// One behavior takes the place of another in a run, between two ticks: which parts of the new one
-// go on from which of the old one's. Worked out beside the run; using it allocates nothing.
+// Bumpless transfer: one behavior replaces another in a run, between two ticks. Maps the parts of
+// the old behavior to those of the new one that continue them. Computed outside the tick; using it
+// allocates nothing.
 #pragma once
 
 #include <cstdint>
@@ -10,35 +11,35 @@
 
 namespace footfall::behaviors {
 
-// By index in the old behavior: the index in the new one of what goes on there, -1: nothing does.
+// By index in the old behavior: index of the corresponding part of the new one, -1: none.
 struct TakeOverMap {
-  // Same dotted path and kind; of a parallel state also the same regions. So the old configuration
-  // is one of the new behavior exactly if all its states are here.
+  // Same dotted path and kind; for a parallel state also the same regions. The old configuration
+  // thus exists in the new behavior exactly if all its states are mapped.
   std::vector<int> states;
-  std::vector<int> histories;    // by slot: same path, shallow or deep alike
-  std::vector<int> transitions;  // same place among those of its state, likewise with `on`, `after`
-  std::vector<std::uint8_t> same_after;  // by transition: its deadline stays as it is
+  std::vector<int> histories;            // by slot: same path, both shallow or both deep
+  std::vector<int> transitions;          // same position in their state, same use of `on`, `after`
+  std::vector<std::uint8_t> same_after;  // by transition: its deadline is unchanged
   std::vector<int> events;               // same name
   std::vector<int> instances;            // tasks of the same name, type and point
   std::vector<int> planners;             // same name
-  std::vector<int> invokes;              // same place among those of its state, same planner
+  std::vector<int> invokes;              // same position among those of its state, same planner
   std::vector<int> signals;              // same name and dimension
-  // Whether the states of one configuration weigh alike, so that what is controlled in it has the
-  // same index.
+  // Whether the states of each configuration have equal control weights, so that the control index
+  // is the same.
   bool same_controls = false;
-  // By slot of the new behavior: that of the old one, of a parameter of the same name and
-  // dimension, -1: none.
+  // By slot of the new behavior: the old slot of a parameter of the same name and dimension, -1:
+  // none.
   std::vector<int> slots;
 };
 
-// Robots must be the same.
+// The robots must be the same.
 TakeOverMap map_take_over(const Behavior& from, const Behavior& to);
 
-// Whether a state or one around it says `reload: ok`.
+// Whether a state or one of its ancestors has `reload: ok`.
 bool permits_reload(const Chart& chart, int state);
 
-// Every reason why `to` can never take the place of `from`, each a text for people: another robot,
-// no state that permits it, or none of those is in `to`.
+// All reasons why `to` can never replace `from`, as text: another robot, no state that permits it,
+// or none of those exists in `to`.
 std::vector<std::string> reasons_against_take_over(const Behavior& from, const Behavior& to,
                                                    const TakeOverMap& map);
 

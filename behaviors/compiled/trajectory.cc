@@ -66,7 +66,7 @@ Motion sample(const Segment& g, double t) noexcept {
 }
 
 // The spline's second derivative is continuous: a tridiagonal system in the inner velocities,
-// eliminated forwards. `acc` holds the factors on the way.
+// solved by forward elimination. `acc` temporarily holds the factors.
 void fit_knots(std::span<Knot> k) noexcept {
   if (k.size() < 3) return;
   const std::size_t last = k.size() - 1;

@@ -1,5 +1,5 @@
-// Reference trajectories of one axis, from the value at entry so that nothing jumps. Pure functions
-// of the time since the start; allocation-free.
+// Reference trajectories of one axis, which start at the value at entry, so that the reference is
+// continuous. Pure functions of the time since the start; allocation-free.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ enum class Shape : std::uint8_t {
   polynomial5,
   cosine,
   minimum_jerk,
-  // Not of one segment alone; their segment, a minimum_jerk or hold, is
+  // Consist of more than one segment; their segment, a minimum_jerk or hold, is
   ellipse,    // the centre's path
   waypoints,  // unused
   surface,    // the height above the surface
@@ -27,12 +27,12 @@ struct Motion {
   double acc = 0.0;
 };
 
-// One segment: from `start` to `to` within `duration`, arriving with `end_velocity`, which is kept
-// on afterwards.
-//   polynomial3:   cubic with the velocity at both ends
+// One segment: from `start` to `to` within `duration`, ending with `end_velocity`, which is kept
+// afterwards.
+//   polynomial3:   cubic with given velocities at both ends
 //   polynomial5:   quintic with velocity and acceleration at the start, acceleration 0 at the end
 //   minimum_jerk:  the same quintic (it minimises jerk between these ends)
-//   cosine:        x0 + (x1 - x0)(1 - cos(pi s))/2; a velocity at the start dies out as s(1 - s)^2
+//   cosine:        x0 + (x1 - x0)(1 - cos(pi s))/2; an initial velocity decays as s(1 - s)^2
 //   hold:          stays at the start, velocity 0
 struct Segment {
   Shape shape = Shape::hold;
@@ -47,7 +47,7 @@ Segment make_segment(Shape shape, const Motion& start, double to, double end_vel
                      double duration) noexcept;
 Motion sample(const Segment& segment, double t) noexcept;
 
-// A place to pass and when.
+// Position and time of a point to pass.
 struct Knot {
   double time = 0.0;  // s since the start
   double pos = 0.0;
@@ -55,15 +55,14 @@ struct Knot {
   double acc = 0.0;
 };
 
-// Velocity and acceleration at the knots between first and last, whose own are given, so that the
-// knots are passed smoothly: those of the cubic spline through them with these end velocities (de
-// Boor 1978, ch. IV, complete spline). Times must grow.
+// Sets velocity and acceleration at the inner knots to those of the cubic spline through all knots
+// with the given end velocities (de Boor 1978, ch. IV, complete spline). Times must increase.
 void fit_knots(std::span<Knot> knots) noexcept;
-// Quintics between the knots: position, velocity and acceleration are continuous everywhere. After
-// the last its velocity is kept on. At least one knot.
+// Quintics between the knots: position, velocity and acceleration are continuous everywhere. The
+// last velocity is kept after the end. At least one knot.
 Motion sample_knots(std::span<const Knot> knots, double t) noexcept;
 
-// One axis of an ellipse that grows from nothing: g(t/ramp) radius cos(angle), g the minimum-jerk
+// One axis of an ellipse that grows from zero: g(t/ramp) radius cos(angle), with g the minimum-jerk
 // step from 0 to 1. rate: of the angle, rad/s; t: s since the start.
 Motion sample_ellipse(double radius, double angle, double rate, double ramp, double t) noexcept;
 

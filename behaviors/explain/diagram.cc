@@ -1,4 +1,4 @@
-// From a compiled behavior and its expanded tree of states to a Diagram; see diagram.h.
+// Converts a compiled behavior and its expanded tree of states to a Diagram; see diagram.h.
 #include "behaviors/explain/diagram.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ std::string text_of(const core::YamlNode& node) {
   }
 }
 
-// One name, or several with commas between.
+// One name, or several separated by commas.
 std::string names_of(const core::YamlNode& node) {
   std::vector<std::string> names;
   for (const core::YamlNode& item : node.items) names.push_back(text_of(item));
@@ -44,7 +44,7 @@ std::string names_of(const core::YamlNode& node) {
   return node.is_scalar() ? text_of(node) : fmt::format("{}", fmt::join(names, ", "));
 }
 
-// A time as written, and its value behind it if it is a parameter.
+// A time as written; for a parameter, followed by its value.
 std::string time_text(const LoadContext& context, const core::YamlNode& node) {
   const std::string text = text_of(node);
   if (!text.starts_with('$')) return text;
@@ -134,7 +134,7 @@ std::vector<int> targets_of(const Behavior& behavior, const Range& range) {
   return {begin, begin + range.count};
 }
 
-// `on: done.state.CHILD` of a parent that is not left for it: the child's own completion.
+// `on: done.state.CHILD` of a parent that the transition does not exit: the child's completion.
 int completed_child(const Behavior& behavior, const TransitionInfo& transition,
                     const core::YamlNode& row) {
   const core::YamlNode* on = row.find("on");
@@ -160,7 +160,7 @@ void add_transition(const LoadContext& context, const TransitionInfo& transition
     return;
   }
   DiagramEdge edge{transition.source, targets_of(context.behavior, transition.targets), {}};
-  // A parallel state has no dot where an edge from inside could end.
+  // A parallel state has no dot at which an edge from inside could end.
   const int first = edge.targets.front();
   const bool around =
       transition.source == first || context.behavior.is_descendant(transition.source, first);
@@ -190,7 +190,7 @@ void add_transitions(const LoadContext& context, int state, const core::YamlNode
     const TransitionInfo& transition = context.behavior.transitions[static_cast<std::size_t>(t)];
     if (k < listed) {
       add_transition(context, transition, list->items[k], diagram);
-    } else if (const auto* after = keys.find("after")) {  // the state's own, timed, is the last
+    } else if (const auto* after = keys.find("after")) {  // the state's own is the last one
       diagram.edges.push_back({state,
                                targets_of(context.behavior, transition.targets),
                                {"after " + time_text(context, *after)}});

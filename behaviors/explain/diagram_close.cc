@@ -1,4 +1,4 @@
-// States drawn closed, as one box each; see diagram.h.
+// Draws states closed, as one box each; see diagram.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ bool has_suffix(const std::string& path, const std::string& name) {
   return path == name || path.ends_with("." + name);
 }
 
-// The one state of that name, the shallowest if there are several; -1 and a reason otherwise.
+// The state of that name, the shallowest if there are several; -1 and a reason otherwise.
 int find_state(const Diagram& diagram, const std::string& name, std::string& why) {
   const auto dots = [](const std::string& path) { return std::ranges::count(path, '.'); };
   int best = -1, other = -1;
@@ -40,7 +40,7 @@ int find_state(const Diagram& diagram, const std::string& name, std::string& why
   return best;
 }
 
-// Which states are drawn with what is in them.
+// By state: whether its content is drawn.
 std::optional<std::vector<bool>> open_states(const Diagram& diagram,
                                              const std::vector<std::string>& names,
                                              std::string& why) {
@@ -56,7 +56,7 @@ std::optional<std::vector<bool>> open_states(const Diagram& diagram,
   return open;
 }
 
-// Drawn indices; a state that is not drawn stands for the closed one it is in.
+// Indices of drawn states; a state that is not drawn maps to the closed state that contains it.
 struct Kept {
   std::vector<int> index;  // by old index
   std::vector<bool> drawn;
@@ -114,7 +114,7 @@ std::optional<Diagram> close_states(const Diagram& diagram, const std::vector<st
     DiagramEdge moved = edge;
     moved.source = kept.index[static_cast<std::size_t>(edge.source)];
     move_targets(moved.targets, kept);
-    // What goes on inside a closed state is not seen from outside.
+    // Transitions inside a closed state are not drawn.
     const bool inside =
         !kept.drawn[static_cast<std::size_t>(edge.source)] &&
         std::ranges::all_of(moved.targets, [&](int t) { return t == moved.source; });

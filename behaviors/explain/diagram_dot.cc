@@ -1,5 +1,5 @@
 // A diagram as a Graphviz graph; see diagram.h. Graphviz edges join nodes, never clusters: an edge
-// of a nested state joins a node inside it and is cut at the cluster's border (lhead, ltail).
+// of a nested state joins a node inside it and is clipped at the cluster's border (lhead, ltail).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr std::size_t kDetailWidth = 46, kLabelWidth = 30;  // characters in a line
+constexpr std::size_t kDetailWidth = 46, kLabelWidth = 30;  // characters a line
 
 constexpr const char* kHead =
     R"(  graph [compound=true, rankdir=TB, nodesep=0.4, ranksep=0.4, fontname="Helvetica", fontsize=11,
@@ -30,11 +30,12 @@ std::string escape_quoted(std::string_view text) {
   return out;
 }
 
-// A table: the name, and below it smaller lines. `&#160;` keeps the indentation of wrapped lines.
+// A table: the name, and below it lines in a smaller font. `&#160;` keeps the indentation of
+// wrapped lines.
 std::string label_html(const DiagramState& state, const std::string& title) {
   std::string out = R"(<<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="1">)";
   const std::vector<std::string> lines = details_of(state, kDetailWidth);
-  const bool open = !state.children.empty();  // a cluster's label begins at its left border
+  const bool open = !state.children.empty();  // the label of a cluster is aligned left
   out += fmt::format(R"(<TR><TD ALIGN="{}"><B>{}</B></TD></TR>)", open ? "LEFT" : "CENTER",
                      core::escape_html(title));
   for (const std::string& line : lines) {
@@ -64,12 +65,12 @@ class DotWriter {
   const DiagramState& state(int s) const { return diagram_.states[static_cast<std::size_t>(s)]; }
   bool is_cluster(int s) const { return s > 0 && !state(s).children.empty(); }
 
-  // The node that stands for a state where an edge begins.
+  // The node that represents a state at the tail of an edge.
   std::string tail(int s) const {
     while (!state(s).children.empty()) s = state(s).children.back();
     return fmt::format("s{}", s);
   }
-  // The node where an edge to a state ends: the dot from which the state is entered.
+  // The node at the head of an edge to a state: the dot from which the state is entered.
   std::string head(int s) const {
     while (!state(s).children.empty()) {
       if (!state(s).initial.empty()) return fmt::format("i{}", s);
@@ -89,7 +90,8 @@ class DotWriter {
       return edge.source == s && !state(s).children.empty() && stays_inside(edge);
     });
   }
-  // Drawn from a small `any state` inside: a border has no inner side in Graphviz.
+  // Such an edge is drawn from a small node `any state` inside: Graphviz borders have no inner
+  // side.
   bool stays_inside(const DiagramEdge& edge) const {
     return std::ranges::any_of(edge.targets, [&](int target) {
       return target == edge.source || is_inside(diagram_, target, edge.source);
@@ -174,7 +176,7 @@ class DotWriter {
     return out;
   }
 
-  // The innermost state that holds both ends of all branches.
+  // The innermost state that contains both ends of all branches.
   int common_parent(const DiagramEdge& edge) const {
     int common = state(edge.source).parent;
     const auto holds = [&](int target) {
@@ -184,8 +186,8 @@ class DotWriter {
     return std::max(common, 0);
   }
 
-  // A node in the edge's way that carries its label, or where it forks: placed by Graphviz beside
-  // the clusters, never on their borders.
+  // An intermediate node that carries the label of an edge, or at which it forks: Graphviz places
+  // it beside the clusters, never on their borders.
   static bool has_waypoint(const DiagramEdge& edge) {
     return !edge.label.empty() || edge.targets.size() > 1;
   }
@@ -216,7 +218,7 @@ class DotWriter {
       border.clear();
     }
     for (const int target : edge.targets) {
-      // An edge into the state that it comes from ends at the dot there: no border is crossed.
+      // An edge from inside a state to that state ends at the dot inside: it crosses no border.
       const bool from_inside = target == edge.source || is_inside(diagram_, edge.source, target);
       out_ += fmt::format("  {} -> {} [arrowhead=normal{}{}]\n", from, head(target), border,
                           from_inside ? std::string() : at_head(target));

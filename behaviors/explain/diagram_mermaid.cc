@@ -1,6 +1,7 @@
-// A diagram as a Mermaid `stateDiagram-v2`; see diagram.h. Mermaid knows neither history nor named
-// final states: those are states called H, H* and a state that leads to the end mark. Nor can it
-// draw an arrow between a composite state and what is in it: `in any state` stands for the former.
+// A diagram as a Mermaid `stateDiagram-v2`; see diagram.h. Mermaid has neither history states nor
+// named final states: they are drawn as states named H, H* and as a state that leads to the end
+// mark. Nor can it draw an arrow between a composite state and its content: a node `in any state`
+// replaces the composite state.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMermaidDetailWidth = 60;
 
-// Everything that ends or opens something in Mermaid's grammar, as its `#code;` entities.
+// Replaces every character with a meaning in Mermaid's grammar by its `#code;` entity.
 std::string escape(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -65,8 +66,8 @@ class MermaidWriter {
     return state_index == ancestor || is_inside(diagram_, state_index, ancestor);
   }
 
-  // The innermost composite that holds both ends, and is no parallel state: what stands beside its
-  // regions is in none of them.
+  // The innermost composite state that contains both ends and is not parallel: a node beside the
+  // regions of a parallel state would be in none of them.
   int scope_of(const DiagramEdge& edge) const {
     int scope = state(edge.source).children.empty() ? state(edge.source).parent : edge.source;
     const auto holds = [&](int target) { return is_inside(diagram_, target, scope); };
@@ -83,7 +84,7 @@ class MermaidWriter {
     if (info.kind == StateKind::history_shallow) title = "H";
     if (info.kind == StateKind::history_deep) title = "H*";
     const std::vector<std::string> lines = details_of(info, kMermaidDetailWidth);
-    if (!info.children.empty()) {  // one line: Mermaid draws what is inside over a second one
+    if (!info.children.empty()) {  // one line only: Mermaid draws the content over a second one
       for (const std::string& line : lines) title += " · " + escape(line);
       out_ += fmt::format("{}state \"{}\" as s{} {{\n", indent, title, s);
       write_inside(s, indent + "  ");

@@ -1,4 +1,4 @@
-// Texts of a diagram; see diagram_text.h.
+// Wraps and joins the texts of a diagram; see diagram_text.h.
 #include "behaviors/explain/diagram_text.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ std::vector<std::string> wrap(std::string_view text, std::size_t width) {
     if (word.empty()) continue;
     if (!line.empty() && line.size() + 1 + word.size() > width) {
       lines.push_back(std::move(line));
-      line = "  ";  // what goes on is indented
+      line = "  ";  // continuation lines are indented
     } else if (!line.empty()) {
       line += ' ';
     }

@@ -1,4 +1,4 @@
-// Values of a behavior file and of expanded states; see explain_machine.h.
+// Effective values of a behavior file and of expanded states; see explain_machine.h.
 #include "behaviors/explain/explain_machine.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// The next part of a dotted key, taken off it.
+// Removes the next part from a dotted key and returns it.
 std::string_view take_part(std::string_view& key) {
   const std::size_t dot = std::min(key.find('.'), key.size());
   const std::string_view part = key.substr(0, dot);
@@ -22,7 +22,7 @@ std::string_view take_part(std::string_view& key) {
   return part;
 }
 
-// Arguments in expressions are framed by control bytes: not for people.
+// Removes the control bytes that frame arguments in expressions, for display.
 void clean(core::YamlNode& node) {
   if (node.is_scalar()) node.scalar = read_marked(node.scalar).text;
   for (core::YamlNode& item : node.items) clean(item);
@@ -62,7 +62,7 @@ StateExplanation explain_state(core::YamlNode root, const std::string& path,
   }
   const StateSource* state = &context.machine;
   std::string_view rest = key;
-  take_part(rest);  // machine
+  take_part(rest);  // skip `machine`
   while (!rest.empty()) {
     std::string_view after = rest;
     const std::string_view part = take_part(after);

@@ -1,4 +1,5 @@
-// Values of a behavior file after --set, and of states that templates made. Load time only.
+// Effective values of a behavior file after --set, and of states created by templates. Load time
+// only.
 #pragma once
 
 #include <string>
@@ -11,19 +12,19 @@
 
 namespace footfall::behaviors {
 
-// Edits the tree as `--set NAME=VALUE` does; problems go to `diagnostics`.
+// Edits the tree like `--set NAME=VALUE`; problems are added to `diagnostics`.
 void apply_settings(core::YamlNode& root,
                     const std::vector<std::pair<std::string, std::string>>& settings,
                     core::Diagnostics& diagnostics);
 
-// A value of a state as it is when templates and mirror images are expanded.
+// A value of a state after expansion of templates and mirror images.
 struct StateExplanation {
   core::Explanation explanation;
   std::vector<std::string> made_from;  // `stride(stance: right_foot)`, outer first
 };
 
-// `machine.states.step.right_foot.lift.after`; `states` may be left out. The tree is compiled:
-// its errors go to `diagnostics`, and the explanation has a problem then.
+// Explains a key such as `machine.states.step.right_foot.lift.after`; `states` may be omitted.
+// Compiles the tree: its errors are added to `diagnostics`, and the explanation then has a problem.
 StateExplanation explain_state(core::YamlNode root, const std::string& path,
                                const LoadOptions& options, std::string_view key,
                                core::Diagnostics& diagnostics);

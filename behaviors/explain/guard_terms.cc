@@ -1,4 +1,4 @@
-// From postfix code back to words; see guard_terms.h.
+// Converts postfix code back to text; see guard_terms.h.
 #include "behaviors/explain/guard_terms.h"
 
 #include <fmt/format.h>
@@ -57,7 +57,8 @@ OpInfo op_info(Op op) {
 
 bool compares(Op op) { return op >= Op::less && op <= Op::not_equal; }
 
-// A subexpression: the stretch of code that ends with its operation.
+// Splits postfix code into terms; a subexpression is the range of code that ends with its
+// operation.
 class Terms {
  public:
   Terms(const Behavior& behavior, const EvaluationContext& context)
@@ -65,7 +66,7 @@ class Terms {
 
   std::vector<GuardTerm> terms;
 
-  // Splits what ends at `last` into terms; returns where it begins.
+  // Splits the subexpression that ends at `last` into terms; returns its beginning.
   int split(int last) {
     const Op op = code(last).op;
     if (op == Op::logical_and || op == Op::logical_or) {
@@ -103,7 +104,7 @@ class Terms {
     return first;
   }
 
-  // By the engine's own evaluation.
+  // Uses the engine's own evaluation.
   double evaluate_part(int first, int last) const {
     ExpressionPool pool;
     const auto begin = behavior_.expressions.code.begin();
@@ -111,7 +112,7 @@ class Terms {
     return evaluate(pool, index, context_);
   }
 
-  // One side of a comparison: its words unless it is a number, then its value.
+  // One side of a comparison: its text (unless it is a number), then its value.
   std::string side(int first, int last, int other_first, int other_last) const {
     const std::string unit = unit_of(first == last               ? last
                                      : other_first == other_last ? other_last

@@ -1,4 +1,4 @@
-// What a guard was made of and what each part gave: for explanations after a run, never in a tick.
+// The terms of a guard and their values: for explanations after a run, never in a tick.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace footfall::behaviors {
 
-// A part of a guard between `and`, `or` and `not`.
+// An operand of `and`, `or` or `not` in a guard.
 struct GuardTerm {
   std::string text;  // with its values: `contact.left_foot false`, `t 0.081 s < 0.145 s`
   bool holds = false;
 };
 
-// The terms of an expression in the order in which they are written, evaluated in `context`.
+// The terms of an expression in their written order, evaluated in `context`.
 std::vector<GuardTerm> guard_terms(const Behavior& behavior, int expression,
                                    const EvaluationContext& context);
 

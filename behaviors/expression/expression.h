@@ -1,6 +1,6 @@
 // Expressions of the behavior language: compiled at load to flat postfix code and lowered to steps
-// that the tick runs without allocation. Dimensions are checked by the compiler; a value that is
-// not finite (division by zero, log of a negative number) is the caller's to judge.
+// that the tick runs without allocation. The compiler checks dimensions; callers must handle values
+// that are not finite (division by zero, log of a negative number).
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace footfall::behaviors {
 
-inline constexpr int kExpressionStack = 32;  // values that an expression may hold at once
+inline constexpr int kExpressionStack = 32;  // maximum number of intermediate values
 
 enum class Op : std::uint8_t {
   constant,    // value
@@ -26,7 +26,7 @@ enum class Op : std::uint8_t {
   state_time,  // s since state `index` was entered
   time,        // s since start
   in_state,    // 1 while state `index` is active
-  entry,       // entry[index]: what the task's reference started from
+  entry,       // entry[index]: start value of the task's reference
   negate,
   logical_not,
   add,
@@ -62,17 +62,17 @@ struct Instruction {
   double value = 0.0;
 };
 
-// One compiled expression: a stretch of the pool's code, and how the tick gets its value.
+// One compiled expression: a range of the pool's code, and how the tick evaluates it.
 struct Expression {
   int first = 0;
   int count = 0;
   core::Dimension dimension;
-  bool bare = false;      // only numbers without unit: took the dimension that was needed
-  bool constant = false;  // the same in every tick
+  bool bare = false;      // numbers without unit only: adopted the expected dimension
+  bool constant = false;  // has the same value in every tick
 
   enum class Form : std::uint8_t { constant, parameter, signal, step, program };
   Form form = Form::program;
-  int index = 0;       // of the parameter's slot or the signal
+  int index = 0;       // parameter slot or signal index
   int program = 0;     // its first step in the pool's program
   double value = 0.0;  // of the constant
 };
@@ -87,17 +87,17 @@ struct ExpressionPool {
     return expressions[static_cast<std::size_t>(index)];
   }
   int size() const { return static_cast<int>(expressions.size()); }
-  // An expression in postfix code.
+  // Adds an expression in postfix code.
   int add(std::vector<Instruction> postfix, core::Dimension dimension, bool bare, bool constant);
-  // A constant as an expression.
+  // Adds a constant.
   int add_constant(double value, core::Dimension dimension);
-  // A signal as an expression.
+  // Adds a signal.
   int add_signal(int signal, core::Dimension dimension);
-  // A parameter's slot as an expression.
+  // Adds a parameter slot.
   int add_parameter(int slot, core::Dimension dimension);
 };
 
-// What an expression reads in a tick.
+// Inputs of an expression in a tick.
 struct EvaluationContext {
   const double* signals = nullptr;
   const double* parameters = nullptr;
@@ -108,7 +108,7 @@ struct EvaluationContext {
   double period = 1e-3;  // s
 };
 
-// The value; not finite when some part of it that counts is not. Comparisons and logic give 0 or 1.
+// The value; not finite if a part that contributes to it is not. Comparisons and logic give 0 or 1.
 inline double evaluate(const ExpressionPool& pool, int expression,
                        const EvaluationContext& context) noexcept {
   const Expression& e = pool[expression];
@@ -119,7 +119,7 @@ inline double evaluate(const ExpressionPool& pool, int expression,
       return context.parameters[e.index];
     case Expression::Form::signal:
       return context.signals[e.index];
-    case Expression::Form::step: {  // nothing to put aside
+    case Expression::Form::step: {  // no intermediate results
       const Step* step = pool.program.data() + e.program;
       return step->kernel(step, 0.0, context, nullptr);
     }
@@ -128,23 +128,23 @@ inline double evaluate(const ExpressionPool& pool, int expression,
   }
 }
 
-// The names that an expression may use.
+// Names available to an expression.
 struct ExpressionScope {
   const core::SignalTable* signals = nullptr;
   const std::vector<ParameterInfo>* parameters = nullptr;
-  int state = -1;  // whose `t` it is; -1: `t` is not available
+  int state = -1;  // state whose clock is `t`; -1: no `t`
   // Index of a state by its (partial) name; -1 and a reason otherwise.
   std::function<int(std::string_view name, std::string& why)> find_state;
-  const std::vector<std::string>* entry_axes = nullptr;            // names of `entry.AXIS`
-  int entry_axis = -1;                                             // what a lone `entry` is
-  core::Dimension entry_dimension;                                 // of the task's axes
-  const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
-  // `max mean rms count` of one signal over a run (expectations only), "max abs" of its magnitude:
-  // the index of the signal that holds it, -1 if there is none.
+  const std::vector<std::string>* entry_axes = nullptr;            // axis names for `entry.AXIS`
+  int entry_axis = -1;                                             // axis of a plain `entry`
+  core::Dimension entry_dimension;                                 // dimension of the task's axes
+  const std::vector<core::Dimension>* entry_dimensions = nullptr;  // for each axis, if they differ
+  // Statistics `max mean rms count` of one signal over a run (expectations only), "max abs" for its
+  // magnitude: index of the signal that holds the statistic, -1 if unsupported.
   std::function<int(std::string_view reduction, int signal)> find_reduction;
 };
 
-// Where and why an expression was refused; `offset` counts bytes from the start of the text.
+// Position and reason of an error; `offset` counts bytes from the start of the text.
 struct ExpressionError {
   int offset = 0;
   std::string id;
@@ -152,7 +152,7 @@ struct ExpressionError {
 };
 
 // Compiles `text` (without a leading `=`) and appends it to the pool. `expected` is checked if
-// given; a number without unit adopts the dimension needed. Returns -1 and fills `error` on
+// given; a number without unit adopts the required dimension. Returns -1 and fills `error` on
 // failure.
 int compile_expression(std::string_view text, const ExpressionScope& scope,
                        std::optional<core::Dimension> expected, ExpressionPool& pool,

@@ -1,4 +1,4 @@
-// The arithmetic of expressions, in the tick; see kernels.h.
+// Arithmetic of expressions, in the tick; see kernels.h.
 #include "behaviors/expression/kernels.h"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ double fetch(StepOperand operand, double accumulator, const EvaluationContext& c
   if constexpr (source == Source::entry) return c.entry == nullptr ? kNaN : c.entry[operand.index];
 }
 
-// A comparison of something that is not finite is not finite itself, so that it counts as false
-// wherever it ends up. One look at the difference is enough, unless that overflows.
+// A comparison with a non-finite operand is not finite, so that it finally counts as false. Testing
+// the difference is sufficient unless it overflows.
 template <Op op>
 double compare(double a, double b) noexcept {
   if (!std::isfinite(a - b) && !(std::isfinite(a) && std::isfinite(b))) return kNaN;
@@ -40,7 +40,7 @@ double compare(double a, double b) noexcept {
   if constexpr (op == Op::not_equal) return a != b ? 1.0 : 0.0;
 }
 
-// `and`, `or` look at the right side only if the left does not decide.
+// `and`, `or` evaluate the right side only if the left one does not decide.
 template <Op op>
 double logic(double a, double b) noexcept {
   if (!std::isfinite(a)) return kNaN;
@@ -110,7 +110,7 @@ double scaled(double other, double product) noexcept {
   if constexpr (op == Scaled::from) return product - other;
 }
 
-// Goes on with another step.
+// Continues with another step.
 double go_on(const Step* next, double accumulator, const EvaluationContext& c,
              double* stored) noexcept {
   return next->kernel(next, accumulator, c, stored);
@@ -175,7 +175,7 @@ double nested_step(const Step* s, double accumulator, const EvaluationContext& c
   return go_on(s + 1, binary<outer>(accumulator, binary<inner>(a, b)), c, stored);
 }
 
-// The comparison counts only if the accumulator does not decide.
+// The comparison is evaluated only if the accumulator does not decide.
 template <Op logic, Op comparison, Source left, Source right>
 double guard_step(const Step* s, double accumulator, const EvaluationContext& c,
                   double* stored) noexcept {
@@ -235,7 +235,7 @@ std::size_t pair(Source left, Source right) {
   return static_cast<std::size_t>(left) * kPairSources + static_cast<std::size_t>(right);
 }
 
-// The first of the operations that it is.
+// Selects the kernel of the matching operation.
 template <Op... ops>
 Kernel find_binary(Op op, std::size_t operands) {
   Kernel kernel = nullptr;

@@ -1,6 +1,6 @@
-// From postfix code to steps, in one pass over the code with a stack of where each value is; see
-// program.h. A value is read where it lies as long as possible; of those that had to be
-// computed the last is in the accumulator, the others are put aside.
+// Converts postfix code to steps in one pass, with a stack of the locations of values; see
+// program.h. A value is read from its original location as long as possible; of computed values,
+// the last one is in the accumulator, the others are stored.
 #include <cmath>
 
 #include "behaviors/expression/writer.h"
@@ -8,7 +8,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// A leaf that a step with two operands can read.
+// A leaf that a binary step can read.
 bool is_pair_leaf(const Instruction& i) { return i.op <= Op::state_time; }
 
 bool is_comparison(Op op) { return op >= Op::less && op <= Op::not_equal; }
@@ -91,7 +91,7 @@ class Lowering {
   Lowering(const Instruction* code, int count, std::vector<Step>& program)
       : code_(code), count_(static_cast<std::size_t>(count)), write_(program) {}
 
-  // Where the value is in the end; in the accumulator if steps were needed.
+  // Returns the location of the value: the accumulator if steps were needed.
   Value lower() {
     find_branches();
     for (std::size_t k = 0; k < count_; ++k) {
@@ -107,7 +107,7 @@ class Lowering {
   }
 
  private:
-  // An operand that does not always count: of `op`, its second or third.
+  // A conditionally evaluated operand: the second or third operand of `op`.
   struct Branch {
     int op = -1;
     int operand = 0;
@@ -116,7 +116,7 @@ class Lowering {
   const Instruction& at(std::size_t k) const { return code_[k]; }
   bool guarded(std::size_t k) const { return k < count_ && guards_[k]; }
 
-  // Where the operands begin of operations that jump.
+  // Finds the first instruction of each conditional operand.
   void find_branches() {
     before_.assign(count_, {});
     jump_.assign(count_, 0);
@@ -146,11 +146,11 @@ class Lowering {
         if (!leaves) before_[own[1]] = {index, 1};
         if (!leaves) before_[own[2]] = {index, 2};
       }
-      starts.resize(starts.size() - operands + 1);  // the first operand's start is the result's
+      starts.resize(starts.size() - operands + 1);  // the result starts where operand 1 starts
     }
   }
 
-  // Every value but constants and the like leaves the accumulator.
+  // Moves the accumulator to a slot.
   void spill() {
     for (std::size_t slot = 0; slot < stack_.size(); ++slot) {
       if (stack_[slot].in_accumulator()) put_aside(stack_[slot], slot);
@@ -174,7 +174,7 @@ class Lowering {
   }
   void push_constant(double value) { stack_.push_back(leaf_value({Op::constant, 0, value})); }
 
-  // The top into the accumulator, as 0, 1 or not finite if `truth`; off the stack.
+  // Pops the top into the accumulator, as 0, 1 or non-finite if `truth`.
   void take_top(bool truth) {
     const Value top = pop();
     if (top.in_accumulator() && (!truth || top.logical)) return;
@@ -182,7 +182,7 @@ class Lowering {
     write_.unary(truth && !top.logical ? Unary::truth : Unary::load, top);
   }
 
-  // The first operand of an operation that jumps is there (or the second of `? :`).
+  // The first operand of a jumping operation (or the second one of `? :`) is complete.
   void begin_operand(Branch branch) {
     const auto op = static_cast<std::size_t>(branch.op);
     if (branch.operand == 2) {
@@ -234,15 +234,15 @@ class Lowering {
     push_result(op == Unary::logical_not);
   }
 
-  // There are kernels for `<` and `<=` only.
+  // Kernels exist only for `<` and `<=`.
   static void mirror(Op& op, Value& left, Value& right) {
     if (op != Op::greater && op != Op::greater_equal) return;
     std::swap(left, right);
     op = op == Op::greater ? Op::less : Op::less_equal;
   }
 
-  // `and`, `or` with a comparison of what needs no steps, in one step; the left side is in the
-  // accumulator.
+  // `and`, `or` with a comparison whose operands need no steps, as one step; the left side is in
+  // the accumulator.
   void lower_guard(Op logic, Op comparison) {
     Value right = pop();
     Value left = pop();
@@ -285,11 +285,11 @@ class Lowering {
   std::size_t count_;
   StepWriter write_;
   std::vector<Value> stack_;
-  std::vector<Branch> before_;      // by instruction: what begins there
+  std::vector<Branch> before_;      // by instruction: branches that begin there
   std::vector<bool> jumps_;         // by operation: whether it jumps
-  std::vector<bool> guards_;        // by operation: whether it takes in the comparison before it
+  std::vector<bool> guards_;        // by operation: whether it absorbs the comparison before it
   std::vector<std::size_t> jump_;   // by operation: its first jump
-  std::vector<std::size_t> leave_;  // by operation: the jump behind the second operand of `? :`
+  std::vector<std::size_t> leave_;  // by operation: the jump after the second operand of `? :`
 };
 
 }  // namespace
@@ -316,7 +316,7 @@ void lower_expression(const Instruction* code, int count, std::vector<Step>& pro
     if (program.size() == first + 2) expression.form = Expression::Form::step;
     return;
   }
-  program.resize(first);  // nothing to run
+  program.resize(first);  // no steps needed
 }
 
 }  // namespace footfall::behaviors

@@ -1,4 +1,4 @@
-// What stands between the operators: numbers, names, functions.
+// Parses operands: numbers, names, functions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ struct FunctionInfo {
   std::string_view name;
   Op op;
   int arguments;
-  enum class Rule { same, none, half, angle, length } rule;  // of dimensions
+  enum class Rule { same, none, half, angle, length } rule;  // rule for dimensions
 };
 
 using Rule = FunctionInfo::Rule;
@@ -64,8 +64,8 @@ Operand ExpressionParser::parse_call(const Token& name) {
        fmt::format("unknown function '{}'{}", name.text, core::did_you_mean(name.text, names)));
 }
 
-// `rms(task.height.error)`, `max(abs(base.rpy.pitch))`: one of the four names and a lone signal or
-// its magnitude ("max abs" to find_reduction).
+// `rms(task.height.error)`, `max(abs(base.rpy.pitch))`: a statistic of a single signal or of its
+// magnitude ("max abs" for find_reduction).
 std::optional<Operand> ExpressionParser::parse_reduction(const Token& name) {
   constexpr std::array<std::string_view, 4> kReductions = {"max", "mean", "rms", "count"};
   if (!scope_.find_reduction || at_ + 2 >= tokens_.size() || scope_.signals == nullptr ||

@@ -1,4 +1,4 @@
-// A parameter or gain of a behavior: one or more neighbouring values in the machine's flat array.
+// A parameter or gain of a behavior: consecutive values in the machine's flat array.
 #pragma once
 
 #include <string>
@@ -14,23 +14,23 @@ struct ParameterInfo {
   int slot = 0;      // first value
   int size = 1;
   core::Dimension dimension;
-  double min = 0.0, max = 0.0;  // equal: no range
+  double min = 0.0, max = 0.0;  // equal: unlimited
   bool live = false;
   std::string doc;
-  bool bare = false;      // no unit was written anywhere: adopts the dimension that is needed
-  bool variable = false;  // an action sets it: back at its value in every run, never live
-  bool gain = false;      // an entry of a gain table
+  bool bare = false;      // written without unit: adopts the required dimension
+  bool variable = false;  // set by an action: reset at the start of every run, never live
+  bool gain = false;      // entry of a gain table
 
   bool has_range() const { return min < max; }
 };
 
-// Which of `size` values `x`, `y` or `z` is; -1: none of them.
+// Component index of `x`, `y` or `z` among `size` values; -1 if invalid.
 inline int component_of(std::string_view name, int size) {
   const int index = name.size() == 1 ? name[0] - 'x' : -1;
   return index >= 0 && index < size && index < 3 ? index : -1;
 }
 
-// A parameter, or one of its values.
+// A parameter, or one of its components.
 struct ParameterPart {
   int parameter = -1;  // into Behavior::parameters
   int component = -1;  // -1: all

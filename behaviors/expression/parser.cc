@@ -1,4 +1,4 @@
-// Operators of expressions, from the weakest to the strongest; see parser.h.
+// Operators of expressions, from lowest to highest precedence; see parser.h.
 #include "behaviors/expression/parser.h"
 
 #include <fmt/format.h>
@@ -211,7 +211,7 @@ Operand ExpressionParser::parse_power() {
   if (!is("^")) return base;
   take();
   const Token& at = peek();
-  const Operand exponent = parse_sign();  // binds to the right: 2^3^2 = 2^9
+  const Operand exponent = parse_sign();  // right-associative: 2^3^2 = 2^9
   require_plain(exponent, at, "an exponent");
   emit(Op::power);
   if (base.dimension == core::kNone) return {core::kNone, base.bare && exponent.bare, false, 0.0};

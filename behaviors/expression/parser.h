@@ -1,6 +1,6 @@
-// The parser of expressions: recursive descent over the tokens, straight to postfix code, with the
-// dimension of every part. A number without a unit is SI and adopts the dimension of what it is
-// added to or compared with.
+// Recursive descent parser for expressions: converts tokens directly to postfix code, with the
+// dimension of every part. A number without a unit is SI and adopts the dimension of the operand
+// that it is added to or compared with.
 #pragma once
 
 #include <optional>
@@ -13,20 +13,20 @@
 
 namespace footfall::behaviors {
 
-// What is known about a part of an expression.
+// Properties of a part of an expression.
 struct Operand {
   core::Dimension dimension;
   bool bare = false;     // adopts a dimension
-  bool literal = false;  // a number as written, in `value`
+  bool literal = false;  // a literal number, stored in `value`
   double value = 0.0;
 };
 
-// Thrown inside the compiler only, once the error is written down.
+// Thrown inside the compiler only, after the error was recorded.
 struct Failure {};
 
 struct FunctionInfo;
 
-// One pass over the tokens; throws Failure with the error written down.
+// One pass over the tokens; throws Failure after recording the error.
 class ExpressionParser {
  public:
   ExpressionParser(const ExpressionScope& scope, const std::vector<Token>& tokens,
@@ -51,9 +51,9 @@ class ExpressionParser {
   [[noreturn]] void fail(const Token& token, std::string id, std::string text);
   void expect(std::string_view symbol);
   void emit(Op op, int index = 0, double value = 0.0);
-  // The dimension of two things that must agree.
+  // The common dimension of two operands.
   Operand unify(const Operand& a, const Operand& b, const Token& at, const std::string& what);
-  // The dimension of a product or quotient; an error if no quantity has it.
+  // The dimension of a product or quotient; an error if its exponents are out of range.
   core::Dimension combine(core::Dimension a, core::Dimension b, bool times, const Token& at);
   void require_plain(const Operand& a, const Token& at, const std::string& what);
   Operand parse_choice();

@@ -1,7 +1,8 @@
-// How the tick runs an expression: a list of steps over one number, the accumulator. Lowering turns
-// the parser's postfix code into them at load: constants are folded, a step reads its operands
-// where they are (a signal, a parameter, a constant in the step), and `and`, `or`, `? :` jump over
-// what does not count. A step is one function, its kernel, chosen for its operation and operands.
+// Execution of expressions in the tick: a list of steps over one number, the accumulator. Lowering
+// converts the parser's postfix code to steps at load: constants are folded, a step reads its
+// operands from their original location (a signal, a parameter, a constant in the step), and `and`,
+// `or`, `? :` jump over operands that are not needed. A step is one function, its kernel, chosen by
+// its operation and operands.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +15,33 @@ struct Expression;
 struct Instruction;
 struct Step;
 
-// Where an operand is read.
+// Location of an operand.
 enum class Source : std::uint8_t {
   accumulator,
-  stored,  // an intermediate result put aside
+  stored,  // a stored intermediate result
   constant,
   parameter,
   signal,
   state_time,
-  // Only for steps with one operand:
+  // Only for unary steps:
   time,
   in_state,
   entry,
 };
 inline constexpr int kSources = 9;
-inline constexpr int kPairSources = 6;  // of steps with two operands
+inline constexpr int kPairSources = 6;  // sources of binary steps
 
-// What a step does; it ends by calling the next one, so a run returns when the last has returned.
-// Compilers turn that into a jump when they optimise; else the stack grows with the steps, which
-// kMaxSteps bounds.
+// Function of a step. It ends by calling the next one, so a program returns when its last step
+// returns. Optimizing compilers turn the call into a jump; otherwise the stack grows with the
+// number of steps, bounded by kMaxSteps.
 using Kernel = double (*)(const Step* step, double accumulator, const EvaluationContext& context,
                           double* stored) noexcept;
 
-inline constexpr int kMaxSteps = 4096;  // of one expression
+inline constexpr int kMaxSteps = 4096;  // steps of one expression
 
 union StepOperand {
-  double value;        // of a constant
-  std::int64_t index;  // of anything else, or steps to jump
+  double value;        // for a constant
+  std::int64_t index;  // for other sources, or number of steps to jump
 };
 
 struct Step {
@@ -49,11 +50,11 @@ struct Step {
   StepOperand right{0.0};
 };
 
-// Runs the steps from `first` to the one that finishes; none is run twice.
+// Runs the steps from `first` to a finishing step; each step runs at most once.
 double run_program(const Step* first, const EvaluationContext& context) noexcept;
 
-// Appends the steps of `code` (postfix, `count` instructions that leave one value) to the program
-// and fills in how `expression` is evaluated.
+// Appends the steps for `code` (postfix, `count` instructions that leave one value) to the program
+// and sets how `expression` is evaluated.
 void lower_expression(const Instruction* code, int count, std::vector<Step>& program,
                       Expression& expression);
 

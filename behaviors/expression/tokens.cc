@@ -1,4 +1,4 @@
-// Numbers take the longest unit that follows them: `6 cm`, `0.25 m/s`, `220 1/s^2`.
+// Tokenizer. Numbers take the longest unit that follows them: `6 cm`, `0.25 m/s`, `220 1/s^2`.
 #include "behaviors/expression/tokens.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ bool is_unit_byte(char c) {
          c == '-' || static_cast<unsigned char>(c) >= 0x80;
 }
 
-// Bytes of the longest unit at the start of `rest`, 0 if none; never cuts a word in two.
+// Length in bytes of the longest unit at the start of `rest`, 0 if none; never splits a word.
 std::size_t unit_length(std::string_view rest) {
   if (rest.empty()) return 0;
   const char first = rest.front();
@@ -34,14 +34,14 @@ std::size_t unit_length(std::string_view rest) {
     const char last = rest[n - 1];
     if (last == ' ' || last == '*' || last == '/' || last == '^' || last == '-') continue;
     if (n < rest.size() && (is_letter(rest[n]) || is_digit(rest[n]) || rest[n] == '.')) continue;
-    if (n < rest.size() && rest[n] == '(' && is_letter(last)) continue;  // a function's name
+    if (n < rest.size() && rest[n] == '(' && is_letter(last)) continue;  // name of a function
     if (n == 1 && first == '1') continue;
     if (core::parse_unit(rest.substr(0, n))) return n;
   }
   return 0;
 }
 
-// Reads a number with its unit at `at`; moves `at` behind it.
+// Reads a number with its unit at `at`; moves `at` past it.
 bool read_number(std::string_view text, std::size_t& at, Token& token, ExpressionError& error) {
   const char* begin = text.data() + at;
   double value = 0.0;
@@ -59,7 +59,7 @@ bool read_number(std::string_view text, std::size_t& at, Token& token, Expressio
   const std::size_t length = unit_length(text.substr(after));
   token.quantity = {value, core::kNone, true};
   if (length > 0) {
-    // Read like a value outside expressions, so that both are the same to the last bit.
+    // Parsed like a value outside expressions, so that both are bit-identical.
     const auto quantity =
         core::parse_quantity(fmt::format("{} {}", number, text.substr(after, length)));
     if (!quantity) {
@@ -97,7 +97,7 @@ bool read_symbol(std::string_view text, std::size_t& at, Token& token) {
   return true;
 }
 
-// What another language's sign is here.
+// The equivalent here of another language's sign.
 std::string_view instead_of(char sign) {
   switch (sign) {
     case '=':

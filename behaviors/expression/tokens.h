@@ -14,12 +14,12 @@ namespace footfall::behaviors {
 struct Token {
   enum class Kind { number, name, parameter, symbol, end };
   Kind kind = Kind::end;
-  int offset = 0;           // of its first byte in the text
-  std::string text;         // name without `$`, or the symbol
-  core::Quantity quantity;  // of a number: SI value, dimension, bare
+  int offset = 0;           // byte offset in the text
+  std::string text;         // name without `$`, or the operator
+  core::Quantity quantity;  // for numbers: SI value, dimension, bare
 };
 
-// Splits the text; empty and an error for a character that has no place in an expression.
+// Splits the text; nullopt and an error for a character that is not allowed in expressions.
 std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionError& error);
 
 }  // namespace footfall::behaviors

@@ -1,4 +1,4 @@
-// Kernels for steps, and two neighbours in one; see writer.h.
+// Chooses kernels for steps, and combines neighbouring steps; see writer.h.
 #include "behaviors/expression/writer.h"
 
 #include <utility>
@@ -11,7 +11,7 @@ Step step_of(Kernel kernel, const Value& left, const Value& right = {}) {
   return {kernel, left.operand, right.operand};
 }
 
-// One step by itself.
+// Executes one step.
 double run_step(const Step& step) {
   const Step steps[] = {step, {control_kernel(Control::finish), {0.0}, {0.0}}};
   return run_program(steps, {});
@@ -67,7 +67,7 @@ void StepWriter::binary(Op op, const Value& left, const Value& right) {
   if (after_store && fresh) nested_ = {size(), op, left, right};
 }
 
-// A sum or difference whose one side is the product just computed from the accumulator.
+// Combines a sum or difference with the product just computed from the accumulator.
 bool StepWriter::join_product(Op op, const Value& left, const Value& right) {
   if ((op != Op::add && op != Op::subtract) || product_.size != size()) return false;
   const bool first = left.in_accumulator();
@@ -80,7 +80,7 @@ bool StepWriter::join_product(Op op, const Value& left, const Value& right) {
   return true;
 }
 
-// a op1 (b op2 c), where a was put aside for the sake of the bracket: it can stay.
+// Combines a op1 (b op2 c): a need not be stored before the bracket is evaluated.
 bool StepWriter::join_nested(Op op, const Value& left, const Value& right) {
   if (nested_.size != size() || left.source != Source::stored || !right.in_accumulator() ||
       left.operand.index != stored_.left.operand.index) {

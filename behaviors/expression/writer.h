@@ -1,5 +1,5 @@
-// Writes the steps of an expression: chooses kernels, and joins neighbouring steps where one kernel
-// does both. Load time only; see program.h.
+// Writes the steps of an expression: chooses kernels, and combines neighbouring steps if one kernel
+// computes both. Load time only; see program.h.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace footfall::behaviors {
 
-// Where a value lies between two steps.
+// Location of a value between two steps.
 struct Value {
   Source source = Source::accumulator;
   StepOperand operand{0.0};
-  bool logical = false;  // 0, 1 or not finite
+  bool logical = false;  // 0, 1 or non-finite
 
   bool in_accumulator() const { return source == Source::accumulator; }
   bool is_constant() const { return source == Source::constant; }
@@ -27,27 +27,28 @@ class StepWriter {
   explicit StepWriter(std::vector<Step>& program) : program_(program) {}
 
   void unary(Unary op, const Value& a);
-  // Of any operation with two operands but greater and greater_equal.
+  // Writes any binary operation except greater and greater_equal.
   void binary(Op op, const Value& left, const Value& right);
-  // A kernel of two operands as it is.
+  // Writes a binary kernel without combining it.
   void pair(Kernel kernel, const Value& left, const Value& right);
-  // The accumulator into a place of its own.
+  // Stores the accumulator in its own slot.
   void store(std::int64_t slot);
-  // The place of a new control step; its jumps are set later, by land().
+  // Index of a new control step; its jumps are set later by land().
   std::size_t control(Control control);
-  // What has been written ends here for a jump, so it stays as it is; steps from `from` to here.
+  // Makes the current end a jump target, so that earlier steps must not change; returns the
+  // distance from step `from`.
   std::int64_t land(std::size_t from);
   Step& at(std::size_t place) { return program_[place]; }
   std::size_t size() const { return program_.size(); }
 
  private:
-  // Lengths of the program mean something only as long as it grows.
+  // Forgets combinable steps; recorded lengths are valid only while the program grows.
   void forget();
   bool join_product(Op op, const Value& left, const Value& right);
   bool join_nested(Op op, const Value& left, const Value& right);
 
-  // The last step, if it was of a kind that can be joined with the next: `size` is the length of
-  // the program then, -1 once a jump ends there.
+  // The last step, if it can be combined with the next one: `size` is the length of the program at
+  // that time, -1 once a jump ends there.
   struct Last {
     std::size_t size = static_cast<std::size_t>(-1);
     Op op = Op::constant;
@@ -57,7 +58,7 @@ class StepWriter {
   std::vector<Step>& program_;
   Last product_;  // accumulator times `right`
   Last stored_;   // the accumulator was stored in `left`
-  Last nested_;   // stored in the step before; then op of what needs no steps
+  Last nested_;   // stored in the step before; then an operation whose operands need no steps
 };
 
 }  // namespace footfall::behaviors

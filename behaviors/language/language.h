@@ -1,6 +1,6 @@
 // The behavior language as data: every map of a `behavior: 1` file with its keys, every list of
-// words. The loader reads its names from here, the JSON Schema and docs/reference.md are printed
-// from here. A new key is a line in a table and the code that reads it.
+// words. Used by the loader, the JSON Schema and docs/reference.md. A new key is one line in a
+// table and the code that reads it.
 #pragma once
 
 #include "core/yaml/key_table.h"
@@ -49,7 +49,7 @@ extern const std::span<const core::WordSpec> kFrames;
 extern const std::span<const core::WordSpec> kConventions;
 extern const std::span<const core::WordSpec> kTrajectories;
 
-// words.cc: what expressions and `on:` may say beside the author's own names.
+// words.cc: built-in names of expressions and of `on:`.
 extern const std::span<const core::WordSpec> kExpressionFunctions;  // with their arguments
 extern const std::span<const core::WordSpec> kExpressionOperators;  // by precedence, weakest first
 extern const std::span<const core::WordSpec> kExpressionNames;      // t, time, entry, ...

@@ -4,90 +4,90 @@
 namespace footfall::behaviors {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
-// Each has its TaskTypeInfo (behaviors/load/control/signals.cc), a test holds them together.
+// Each row has its TaskTypeInfo (behaviors/load/control/signals.cc); a test compares them.
 constexpr WordSpec kTaskTypeRows[] = {
     {"com_position", "the centre of mass"},
     {"body_orientation",
-     "the floating base's orientation, about the axes of the heading frame; an axis left out is "
+     "the floating base's orientation, about the axes of the heading frame; an omitted axis is "
      "free"},
     {"point_position", "a named point or contact"},
     {"joint_posture", "joint angles"},
     {"joint_damping", "brings joints to rest: kd only, no reference"},
     {"frame_orientation",
      "the orientation of a named point's frame; roll, pitch and yaw as in body_orientation"},
-    {"frame_pose", "place and orientation of a named point's frame"},
+    {"frame_pose", "position and orientation of a named point's frame"},
     {"centroidal_angular_momentum",
      "angular momentum h about the centre of mass: h' = h'_ref + kd e + kp ∫e, no ki"},
 };
 
 constexpr WordSpec kFrameRows[] = {
     {"world", "fixed"},
-    {"stance", "positions: from the mean of the contact points in force, the world's directions"},
-    {"heading", "upright, turned to where the base (a frame_orientation: the frame itself) looks"},
+    {"stance", "positions: relative to the mean of the active contact points, world directions"},
+    {"heading", "upright, with the yaw of the base (for frame_orientation: of the frame itself)"},
 };
 
 constexpr ValueSpec kReferenceValue =
-    computed(by_axis(any_quantity("m, or rad; `entry` is where the task started")));
+    computed(by_axis(any_quantity("m, or rad; `entry` is the value at the task's start")));
 
 constexpr KeySpec kTaskRows[] = {
-    key("type", choice(kTaskTypeRows), "what is controlled; a state may leave it to the stack")
+    key("type", choice(kTaskTypeRows),
+        "the controlled quantity; optional in a state if the stack has the task")
         .required(),
     key("axes", list(name_of("an axis")),
-        "which axes; one left out is free, the order is that of "
-        "`reference` and gains")
+        "controlled axes, in the order of `reference` and gains; omitted ones are free")
         .otherwise("all")
         .only("com_position body_orientation point_position frame_orientation frame_pose "
               "centroidal_angular_momentum"),
-    key("joints", list(name_of("a joint")), "which joints, by name or glob (\"*_hip\")")
+    key("joints", list(name_of("a joint")), "controlled joints, by name or glob (\"*_hip\")")
         .otherwise("all")
         .only("joint_posture joint_damping"),
-    key("point", name_of("a contact or point"), "which point of the robot; needed")
+    key("point", name_of("a contact or point"), "controlled point of the robot; required")
         .only("point_position frame_orientation frame_pose"),
-    key("frame", choice(kFrameRows), "in which its axes are meant")
+    key("frame", choice(kFrameRows), "frame of its axes")
         .otherwise("world; orientations heading")
         .only("com_position body_orientation point_position frame_orientation frame_pose "
               "centroidal_angular_momentum"),
     key("priority", integer(1, 1000),
-        "its level: a larger number acts only in the null space of the smaller ones")
+        "its level: a larger number acts only in the null space of smaller ones")
         .otherwise("1"),
-    key("weight", computed(by_axis(quantity(kNone))), "against the other tasks of its level")
+    key("weight", computed(by_axis(quantity(kNone))), "relative to other tasks of its level")
         .otherwise("1"),
     key("reference", kReferenceValue, map_of(kTrajectoryKeys),
-        "what it should be: a value an axis (number, expression, signal, `planner.NAME.target`), "
+        "desired value: one value an axis (number, expression, signal, `planner.NAME.target`), "
         "or a trajectory")
         .only("com_position body_orientation point_position joint_posture frame_orientation "
               "frame_pose centroidal_angular_momentum"),
     key("gains", name_of("a gain table"), map_of(kGainsKeys),
-        "its gains, or another table that has them")
-        .otherwise("those of the state's or stack's table"),
+        "its gains, or another table with them")
+        .otherwise("the state's or stack's table"),
     key("integral_limit", computed(by_axis(any_quantity("m s or rad s"))),
-        "bound of the integral of the error on each axis")
+        "limit of the error integral on each axis")
         .otherwise("none"),
     key("acceleration_limit", computed(by_axis(any_quantity("m/s^2 or rad/s^2"))),
-        "bound of the acceleration it asks for on each axis")
+        "limit of the commanded acceleration on each axis")
         .otherwise("none"),
-    key("doc", text_of("a text"), "what it is for, in a line"),
+    key("doc", text_of("a text"), "its purpose, in one line"),
 };
 
 constexpr WordSpec kConventionRows[] = {
     {"mean", "the reference is the force at each contact"},
-    {"sum", "the reference is twice that: the paper's way"},
+    {"sum", "the reference is twice that, as in the paper"},
 };
 
 constexpr WordSpec kBetweenRows[] = {
-    {"all", "every pair of the contacts in force that has no internal force of its own"},
+    {"all", "every pair of active contacts without an internal force of its own"},
 };
 
 constexpr KeySpec kInternalRows[] = {
     key("between", pair(name_of("a contact")), choice(kBetweenRows), "the two contacts, or all")
         .required(),
-    key("reference", computed(quantity(kForce)), "positive pushes them apart").required(),
+    key("reference", computed(quantity(kForce)), "positive pushes the contacts apart").required(),
     key("feedback", computed(quantity(kNone)), "gain on the error of the measured force")
         .otherwise("0"),
-    key("convention", choice(kConventionRows), "what `reference` counts").otherwise("mean"),
-    key("doc", text_of("a text"), "what it is for, in a line"),
+    key("convention", choice(kConventionRows), "meaning of `reference`").otherwise("mean"),
+    key("doc", text_of("a text"), "its purpose, in one line"),
 };
 
 constexpr WordSpec kTrajectoryRows[] = {
@@ -95,7 +95,7 @@ constexpr WordSpec kTrajectoryRows[] = {
     {"polynomial", "of order 3 or 5, from value and velocity at entry"},
     {"cosine", "half a cosine wave, at rest at both ends"},
     {"minimum_jerk", "the smoothest motion"},
-    {"ellipse", "turns about a centre, growing from nothing"},
+    {"ellipse", "rotates about a centre, growing from zero"},
     {"waypoints", "passes points smoothly"},
     {"surface", "the world's surface below, and a height above it: axes [z] of a position"},
 };
@@ -106,14 +106,14 @@ constexpr std::string_view kFollowing = "polynomial cosine minimum_jerk surface"
 
 constexpr WordSpec kDirectionRows[] = {
     {"positive", "from the first axis towards the second"},
-    {"negative", "the other way"},
+    {"negative", "reverse"},
 };
 
 constexpr KeySpec kWaypointRows[] = {
     key("at", computed(quantity(kTime)), quantity(kNone, "a part of `over`"),
-        "when: since entry, or a part of the trajectory's `over`"),
-    key("over", computed(quantity(kTime)), "or: since the point before"),
-    key("to", kReferenceValue, "where; an axis left out of a map goes on to its next point")
+        "time since entry, or a part of the trajectory's `over`"),
+    key("over", computed(quantity(kTime)), "alternatively: time since the previous point"),
+    key("to", kReferenceValue, "position; an axis omitted in a map continues to its next point")
         .required(),
 };
 
@@ -121,30 +121,32 @@ constexpr KeySpec kTrajectoryKeyRows[] = {
     key("trajectory", choice(kTrajectoryRows), "its shape").required(),
     key("order", integer(3, 5), "3 or 5").only("polynomial"),
     key("to", kReferenceValue,
-        "where it ends; an axis left out of a map stays. Ellipse: of its centre; surface: height "
+        "end value; an axis omitted in a map is constant. Ellipse: of its centre; surface: height "
         "above it")
         .only(kGoing),
-    key("over", computed(quantity(kTime)), "how long it takes, read at entry").only(kLasting),
+    key("over", computed(quantity(kTime)), "duration, read at entry").only(kLasting),
     key("end_velocity", computed(by_axis(any_quantity("m/s or rad/s"))),
-        "velocity at the end, kept afterwards; read at entry, as `to` is: the whole way depends on "
-        "it")
+        "velocity at the end, kept afterwards; read at entry like `to`, because the whole path "
+        "depends on it")
         .otherwise("0")
         .only(kArriving),
     key("retarget", boolean(), quantity(kNone, "a part of `over`, at most 95 %"),
-        "whether it follows a `to` that changes: true (for 80 % of `over`), or for which part")
+        "whether it follows a changing `to`: true (during 80 % of `over`), or a part")
         .otherwise("false")
         .only(kFollowing),
     key("radius", computed(by_axis(any_quantity("m or rad"))), "of the ellipse along each axis")
         .only("ellipse"),
-    key("period", computed(quantity(kTime)), "of a turn").only("ellipse"),
-    key("phase", computed(by_axis(quantity(kNone, "an angle"))), "of the turn at entry")
+    key("period", computed(quantity(kTime)), "of a rotation").only("ellipse"),
+    key("phase", computed(by_axis(quantity(kNone, "an angle"))), "of the rotation at entry")
         .otherwise("0")
         .only("ellipse"),
-    key("direction", choice(kDirectionRows), "of the turn").otherwise("positive").only("ellipse"),
-    key("ramp", computed(quantity(kTime)), "in which it grows from nothing, read at entry")
+    key("direction", choice(kDirectionRows), "of the rotation")
+        .otherwise("positive")
+        .only("ellipse"),
+    key("ramp", computed(quantity(kTime)), "duration of the growth from zero, read at entry")
         .otherwise("one period")
         .only("ellipse"),
-    key("points", list(map_of(kWaypointKeys)), "what it passes, in their order").only("waypoints"),
+    key("points", list(map_of(kWaypointKeys)), "the points, in order").only("waypoints"),
 };
 
 }  // namespace
@@ -152,19 +154,19 @@ constexpr KeySpec kTrajectoryKeyRows[] = {
 constinit const core::KeyTable kTaskKeys = {
     .id = "task",
     .doc =
-        "Something to control, with a priority. A task in force before (same name, type and "
-        "point) keeps its reference and integral.",
+        "A controlled quantity with a priority. A task that was active before (same name, type "
+        "and point) keeps its reference and integral.",
     .keys = kTaskRows,
     .part = true,
     .selector = "type",
     .variants = kTaskTypeRows};
 constinit const core::KeyTable kInternalKeys = {
     .id = "internal",
-    .doc = "A force between contacts that moves nothing. Pairs that are not named get 0 N.",
+    .doc = "A force between contacts that causes no motion. Pairs that are not named get 0 N.",
     .keys = kInternalRows,
     .part = true};
 constinit const core::KeyTable kWaypointKeys = {
-    .id = "waypoint", .doc = "A point that is passed, and when.", .keys = kWaypointRows};
+    .id = "waypoint", .doc = "A point to pass, and its time.", .keys = kWaypointRows};
 constinit const core::KeyTable kTrajectoryKeys = {
     .id = "trajectory",
     .doc = "A motion from the value at entry, with feed-forward.",

@@ -1,4 +1,4 @@
-// Values and names in a behavior file, compiled where they stand; see context.h.
+// Compiles values and resolves names of a behavior file; see context.h.
 #include "behaviors/load/context.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,8 @@
 namespace footfall::behaviors {
 namespace {
 
-// Signs apart from what they belong to, or two in a row: `= - $x` has lost what came before.
+// Columns of signs separated from their operand, or doubled: in `= - $x` the left operand is
+// missing.
 std::vector<int> stray_signs(const std::string& text) {
   std::vector<int> out;
   ExpressionError ignored;
@@ -136,7 +137,7 @@ int LoadContext::compile_time(const core::YamlNode& node, const ValueScope& scop
   return expression;
 }
 
-// Sought in the state and below, then in its parent and below, and outwards; the shallowest wins.
+// Searches the state and below, then its parent and below, and so on; the shallowest match wins.
 int LoadContext::find_target(int from, std::string_view name, std::string& why) const {
   const auto& states = behavior.states;
   for (int scope = from; scope >= 0; scope = states[static_cast<std::size_t>(scope)].parent) {
@@ -162,7 +163,7 @@ int LoadContext::find_target(int from, std::string_view name, std::string& why) 
   }
   if (name == states[0].path) return 0;
   std::vector<std::string> names;
-  // Guessing compares with every state: not for thousands of names that fit nothing.
+  // Limit of guesses, because each one compares with every state.
   constexpr int kGuesses = 100;
   if (++state_guesses <= kGuesses) {
     for (const StateInfo& info : states) names.push_back(info.name);

@@ -1,8 +1,8 @@
-// What the loader's parts share while a behavior is being compiled. Load time only.
+// State shared by the parts of the loader while a behavior is compiled. Load time only.
 //
 // Order: overrides (--set) into the YAML, robot, parameters, templates expanded into a tree of
-// states, names of states, planners, signals, then everything that holds expressions: transitions,
-// actions, invokes, control.
+// states, names of states, planners, signals, then everything that contains expressions:
+// transitions, actions, invokes, control.
 #pragma once
 
 #include <array>
@@ -24,41 +24,41 @@
 
 namespace footfall::behaviors {
 
-// Arguments of a template, in the order of its `args`.
+// Template arguments, in the order of `args`.
 using Arguments = std::vector<std::pair<std::string, core::YamlNode>>;
 
-// A state after the expansion of templates; its keys hold no arguments any more.
+// A state after template expansion; its keys contain no arguments any more.
 struct StateSource {
   std::string name;
   core::Mark mark;
   core::YamlNode keys;  // a map, without `states`, `use`, `mirror` and `with`
-  Arguments arguments;  // in force where it is written; a stack's `$names` are looked up here
+  Arguments arguments;  // arguments in scope, used to resolve `$names` in stacks
   std::vector<StateSource> children;
   int index = -1;      // into Behavior::states
-  std::string origin;  // template and arguments it was made from, for people; empty: none
+  std::string origin;  // its template and arguments, for messages; empty: none
 };
 
-// One named gain table entry, or the gains written in a task: slots are made at first use.
+// One gain table entry, or gains written in a task; slots are created on first use.
 struct GainEntry {
   const core::YamlNode* node = nullptr;
   std::string name;                      // `gains.single.swing`
   std::array<int, 3> slots{-1, -1, -1};  // kp, ki, kd
   std::array<int, 3> sizes{0, 0, 0};
-  std::array<bool, 3> computed{};  // is an expression: compiled where it is used, not live
-  std::vector<std::string> axes;   // of the first task that used it
+  std::array<bool, 3> computed{};  // is an expression: compiled where used, not live
+  std::vector<std::string> axes;   // axes of the first task that uses it
   bool made = false;
-  bool overlaid = false;  // some task has it, if under an inner layer's
+  bool overlaid = false;  // used by some task, possibly below an inner layer's
 };
 
-// What names mean inside an expression or value.
+// Name scope of an expression or value.
 struct ValueScope {
-  int state = -1;                                        // the state it is written in
-  const std::vector<std::string>* entry_axes = nullptr;  // in a task's reference
+  int state = -1;                                        // the state that contains it
+  const std::vector<std::string>* entry_axes = nullptr;  // inside a task's reference
   int entry_axis = -1;
   const std::vector<core::Dimension>* entry_dimensions = nullptr;
 };
 
-// An event that an action raises.
+// An event raised by an action.
 struct RaisedEvent {
   std::string name;
   core::Mark mark;
@@ -71,60 +71,61 @@ struct LoadContext {
   Behavior& behavior;
   const LoadOptions& options;
   core::Diagnostics& diagnostics;
-  core::YamlNode root;                                              // the file, overrides applied
+  core::YamlNode root;                                              // the file after overrides
   StateSource machine;                                              // expanded
   std::vector<const StateSource*> sources;                          // by state index
-  std::map<std::string, GainEntry> gain_entries;                    // by name; node addresses stay
+  std::map<std::string, GainEntry> gain_entries;                    // by name; stable addresses
   std::array<std::optional<std::array<double, 2>>, 3> gain_ranges;  // kp, ki, kd
-  std::deque<core::YamlNode> substituted;  // stacks with arguments put in; addresses stay
+  std::deque<core::YamlNode> substituted;  // stacks with arguments put in; stable addresses
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
   std::vector<std::string> used_templates, used_stacks, used_torque_loops;
-  std::vector<std::pair<std::string, Arguments>> mirrored;  // templates, as written
+  std::vector<std::pair<std::string, Arguments>> mirrored;  // instantiated templates, as written
   std::vector<RaisedEvent> raised_events;
   std::set<std::string> declared_events;
   std::vector<const core::YamlNode*> transition_nodes;  // by transition, nullptr: a state's own
-  std::vector<std::vector<int>> control_states;  // by control, the states that it was merged from
-  std::vector<std::string> script_functions;     // that `call:` may name
-  std::vector<std::string> script_patterns;      // of footfall.on
+  std::vector<std::vector<int>> control_states;  // by control: the states that it is merged from
+  std::vector<std::string> script_functions;     // functions available to `call:`
+  std::vector<std::string> script_patterns;      // patterns of footfall.on
   std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`
-  std::unordered_map<std::string, int> event_ids;         // as Behavior::events
-  int built_in_events = 0;  // events before this index are raised by the engine or from outside
-  std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and what to say of them
+  std::unordered_map<std::string, int> event_ids;         // index in Behavior::events
+  int built_in_events = 0;  // events below this index are raised by the engine or from outside
+  std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and the warning
   std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source
   std::vector<std::string_view> task_type_of_name;                   // by Behavior::task_names
   int expanded_states = 0;
-  mutable int state_guesses = 0;  // names of states that were looked for in vain
-  bool states_missing = false;    // after an error in a template: a name unknown may be one of them
+  mutable int state_guesses = 0;  // unknown state names for which a similar name was searched
+  bool states_missing = false;    // after an error in a template: a name may belong to it
 
   void error(core::Mark mark, std::string_view id, std::string text);
   void warning(core::Mark mark, std::string_view id, std::string text);
-  // For what is not there (nobody uses it, nothing raises it): not said once there are errors,
-  // which may be the reason.
+  // Warns about a missing use (of a name, an event). Suppressed after errors, which may be the
+  // cause.
   void absence(core::Mark mark, std::string_view id, std::string text);
-  // The keys of a state as its file has them, templates expanded.
+  // The keys of a state from the file, after template expansion.
   const core::YamlNode& keys_of(int state) const {
     return sources[static_cast<std::size_t>(state)]->keys;
   }
-  // The value under a key of a map in the file's root, nullptr if there is none.
+  // The value under a top-level key of the file, nullptr if absent.
   const core::YamlNode* section(std::string_view key) const { return root.find(key); }
 
-  // Expression text as an index into the pool, -1 and an error at the exact column otherwise.
+  // Compiles expression text; returns its index in the pool, or -1 after an error at the exact
+  // column.
   int compile(const core::YamlNode& node, std::string_view text, std::size_t offset,
               std::optional<core::Dimension> expected, const ValueScope& scope);
-  // A scalar value: a quantity, `$parameter`, `= expression`, or a lone signal name; of any
-  // dimension without `expected`.
+  // Compiles a scalar value: a quantity, `$parameter`, `= expression`, or a single signal name; of
+  // any dimension without `expected`.
   int compile_value(const core::YamlNode& node, std::optional<core::Dimension> expected,
                     const ValueScope& scope);
-  // A `when:`, where the `=` is implied.
+  // Compiles a `when:`, where the `=` is implied.
   int compile_condition(const core::YamlNode& node, const ValueScope& scope);
   // The value if the expression is constant.
   std::optional<double> constant_value(int expression) const;
-  // A time that must not be negative where it is constant.
+  // Compiles a time; a negative constant is an error.
   int compile_time(const core::YamlNode& node, const ValueScope& scope);
 
   // A state by any suffix of its path, see docs/behaviors.md 8.8; -1 and a reason otherwise.
   int find_target(int from, std::string_view name, std::string& why) const;
-  // The same with an error at the node.
+  // Same, with an error at the node.
   int require_target(int from, const core::YamlNode& node);
   int add_event(std::string_view name);
   std::vector<std::string> parameter_names() const;

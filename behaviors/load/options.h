@@ -1,4 +1,4 @@
-// What a program tells the loader beside the file.
+// Options of the loader besides the file.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace footfall::behaviors {
 
-// A C++ function that behaviors may `call:`.
+// A C++ function available to `call:` in behaviors.
 struct NativeFunctionInfo {
   std::string name;
   NativeFunction function = nullptr;
@@ -17,12 +17,12 @@ struct NativeFunctionInfo {
 
 struct LoadOptions {
   std::vector<std::string> search;  // folders of robots/NAME/robot.yaml, behaviors/library
-  std::string robot;                // overrides the file's `robot:` if not empty
+  std::string robot;                // replaces the file's `robot:` if not empty
   std::vector<NativeFunctionInfo> functions;             // registered by the program
-  std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, texts as in YAML
+  std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, in YAML notation
 };
 
-// Where `base: NAME` finds behaviors by name: behaviors/library in each folder of `search`.
+// Search folders for `base: NAME`: behaviors/library in each folder of `search`.
 std::vector<std::string> library_folders(const std::vector<std::string>& search);
 
 }  // namespace footfall::behaviors

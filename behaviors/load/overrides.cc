@@ -1,5 +1,5 @@
-// --set NAME=VALUE: edits of the file's tree before anything is compiled, so that an override is
-// checked exactly like what it replaces.
+// --set NAME=VALUE: edits the file's tree before anything is compiled, so that an override is
+// checked exactly like the value that it replaces.
 #include <fmt/format.h>
 
 #include "behaviors/load/context.h"
@@ -31,7 +31,7 @@ void put_or_replace(core::YamlNode& map, const std::string& key, core::YamlNode 
   }
 }
 
-// The map that `parts` (all but the last) leads to, nullptr and an error otherwise.
+// The map that `parts` (without the last one) leads to, nullptr and an error otherwise.
 core::YamlNode* walk(LoadContext& context, core::YamlNode& start, const std::string& name,
                      const std::vector<std::string>& parts, core::Mark mark) {
   core::YamlNode* node = &start;
@@ -48,7 +48,7 @@ core::YamlNode* walk(LoadContext& context, core::YamlNode& start, const std::str
   return node;
 }
 
-// The unit that a value, or else the range beside it, is written with.
+// The unit of a value, or else of the range beside it.
 std::optional<core::Dimension> written_dimension(const core::YamlNode& node) {
   if (node.is_scalar()) {
     const auto quantity = core::parse_quantity(node.scalar);

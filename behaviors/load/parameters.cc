@@ -1,4 +1,4 @@
-// `parameters:` as slots of the flat array of values.
+// `parameters:` as slots of the flat value array.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxComponents = 16;
 
-// The values of one parameter: a quantity or a list of them, all of one dimension.
+// Reads the values of one parameter: a quantity or a list of them, all of one dimension.
 bool read_values(LoadContext& context, const core::YamlNode& node, ParameterInfo& info,
                  std::vector<double>& values) {
   std::vector<const core::YamlNode*> items;
@@ -49,7 +49,7 @@ bool read_values(LoadContext& context, const core::YamlNode& node, ParameterInfo
 void read_range(LoadContext& context, const core::YamlNode& map, ParameterInfo& info) {
   const core::YamlNode* node = map.find("range");
   if (node == nullptr) return;
-  if (info.bare && node->is_sequence()) {  // the unit may stand in the range alone
+  if (info.bare && node->is_sequence()) {  // only the range may have a unit
     for (const core::YamlNode& item : node->items) {
       const auto quantity = item.is_scalar() ? core::parse_quantity(item.scalar) : std::nullopt;
       if (quantity && !quantity->bare) {

@@ -1,15 +1,15 @@
-// Steps of the loader before and after the chart and the control: tree, overrides, parameters,
-// templates, names that nobody uses. Load time only.
+// Loader steps before and after chart and control: tree, overrides, parameters, templates, unused
+// names. Load time only.
 #pragma once
 
 #include "behaviors/load/context.h"
 
 namespace footfall::behaviors {
 
-// Arguments put into a tree: whole scalars, keys, parts of dotted names and of expressions.
+// Substitutes arguments in a tree: whole scalars, keys, parts of dotted names and of expressions.
 core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments);
 
-// A behavior's file, or its text, with its bases (tree.cc).
+// Loads a behavior's file, or its text, with its bases (tree.cc).
 core::YamlNode load_tree(const std::string& path, const LoadOptions& options,
                          core::Diagnostics& diagnostics);
 core::YamlNode load_tree_text(std::string_view text, const std::string& name,
@@ -21,7 +21,7 @@ void expand_machine(LoadContext& context);       // template.cc
 void check_machine_names(LoadContext& context);  // template.cc
 void warn_absences(LoadContext& context);        // unused.cc
 
-// Errors for every `$name` left in a name or key that is no parameter (template.cc).
+// Reports every `$name` left in a name or key that is not a parameter (template.cc).
 void check_resolved(LoadContext& context, const core::YamlNode& node);
 
 }  // namespace footfall::behaviors

@@ -1,4 +1,4 @@
-// Template arguments put into YAML; see context.h and substitution.h.
+// Substitutes template arguments in YAML; see context.h and substitution.h.
 #include "behaviors/load/substitution.h"
 
 #include <cctype>
@@ -23,7 +23,7 @@ bool is_number(std::string_view text) {
                            std::isdigit(static_cast<unsigned char>(text.front())) != 0);
 }
 
-// Every `$name` of an argument in the text; `framed` inside expressions.
+// Substitutes every `$name` of an argument in the text; `framed` inside expressions.
 std::string substitute_text(const std::string& text, const Arguments& arguments, bool framed) {
   std::string out;
   std::size_t at = 0;
@@ -89,7 +89,7 @@ MarkedText read_marked(std::string_view text) {
   for (std::size_t k = 0; k < text.size(); ++k) {
     if (text[k] == kMarkBegin && k + 1 < text.size()) {
       const int length = text[k + 1];
-      int depth = 1;  // an argument may hold arguments of its own
+      int depth = 1;  // an argument may contain arguments itself
       for (k += 2; k < text.size(); ++k) {
         if (text[k] == kMarkBegin) {
           ++depth;

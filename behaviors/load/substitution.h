@@ -1,5 +1,5 @@
-// Template arguments put into text. Inside an expression a substituted part is framed by two
-// control bytes, so that an error behind it is still reported at its column in the file.
+// Substitutes template arguments in text. Inside an expression a substituted part is framed by two
+// control bytes, so that errors behind it are still reported at their column in the file.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace footfall::behaviors {
 
-inline constexpr char kMarkBegin = '\x01';  // then one byte: length of the text that was replaced
+inline constexpr char kMarkBegin = '\x01';  // followed by one byte: length of the replaced text
 inline constexpr char kMarkEnd = '\x02';
 
 // An expression without its frames.
 struct MarkedText {
   std::string text;
-  std::vector<int> columns;  // by byte of `text`: its offset in the file's text
+  std::vector<int> columns;  // by byte of `text`: offset in the file's text
   int column(int offset) const;
 };
 

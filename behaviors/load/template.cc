@@ -1,4 +1,4 @@
-// Templates and mirror images, expanded into a tree of states that holds no arguments any more.
+// Expands templates and mirror images into a tree of states without arguments.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +10,7 @@ namespace footfall::behaviors {
 namespace {
 
 constexpr int kMaxNesting = 32;
-constexpr int kMaxStates =
-    5000;  // a template that uses another twice, and so on, grows without end
+constexpr int kMaxStates = 5000;  // bounds templates that instantiate others several times
 
 core::YamlNode text_node(std::string text, core::Mark mark) {
   core::YamlNode node;
@@ -37,7 +36,7 @@ bool is_template_key(std::string_view key) {
   return key == "use" || key == "mirror" || key == "with" || key == "args";
 }
 
-// `over` on `base`: maps merge by key, all else is replaced, `off` removes.
+// Merges `over` over `base`: maps by key, everything else is replaced, `off` removes.
 void merge(core::YamlNode& base, const core::YamlNode& over) {
   for (const core::YamlEntry& entry : over.entries) {
     if (is_template_key(entry.key)) continue;
@@ -82,7 +81,7 @@ std::vector<std::string> argument_names(const core::YamlNode& body) {
   return names;
 }
 
-// The arguments of an instance in the template's order; nothing and errors if they do not fit.
+// The arguments of an instance in the template's order; nullopt after errors.
 std::optional<Arguments> read_arguments(LoadContext& context, const core::YamlNode& body,
                                         const core::YamlNode* with, const core::YamlNode& name) {
   const std::vector<std::string> names = argument_names(body);
@@ -117,7 +116,7 @@ std::optional<Arguments> read_arguments(LoadContext& context, const core::YamlNo
 StateSource expand(LoadContext& context, const std::string& name, core::Mark mark,
                    core::YamlNode keys, Arguments arguments, int depth);
 
-// `stride(stance: right_foot, swing: left_foot)`.
+// Text such as `stride(stance: right_foot, swing: left_foot)`.
 std::string instance_text(const core::YamlNode& name, const Arguments& arguments) {
   std::vector<std::string> parts;
   for (const auto& [key, value] : arguments) {
@@ -126,7 +125,7 @@ std::string instance_text(const core::YamlNode& name, const Arguments& arguments
   return fmt::format("{}({})", name.scalar, fmt::join(parts, ", "));
 }
 
-// An instance of a template, `over` over its keys.
+// An instance of a template, with the keys of `over` merged over its own.
 StateSource instantiate(LoadContext& context, const std::string& name, core::Mark mark,
                         const core::YamlNode& body, Arguments arguments, const char* side,
                         const core::YamlNode& over, const Arguments& outer, int depth) {
@@ -142,7 +141,7 @@ StateSource instantiate(LoadContext& context, const std::string& name, core::Mar
   return expand(context, name, mark, std::move(keys), std::move(arguments), depth + 1);
 }
 
-// The image of an argument under the robot's symmetry; other values stay.
+// The image of an argument under the robot's symmetry; other values are unchanged.
 core::YamlNode image_of(LoadContext& context, const core::YamlNode& value) {
   core::YamlNode image = value;
   for (const auto& [a, b] : context.behavior.robot.symmetry) {
@@ -159,7 +158,7 @@ core::YamlNode image_of(LoadContext& context, const core::YamlNode& value) {
   return image;
 }
 
-// Two states named after their first argument; the one that is done hands over to the other.
+// Two states named after their first argument; when one is done, the other follows.
 void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNode& name,
                    const core::YamlNode* with, int depth) {
   const core::YamlNode* body = find_template(context, name);
@@ -175,7 +174,7 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
   for (const auto& [key, value] : *arguments) image.emplace_back(key, image_of(context, value));
   const std::string first = arguments->front().second.scalar;
   std::string second = image.front().second.scalar;
-  // Without its robot, which was reported, nothing has an image: any name does to look at the rest.
+  // If the robot could not be loaded (reported), accept any name as an image, to check the rest.
   if (context.behavior.has_robot && context.behavior.robot.joints.empty())
     second = first + "_image";
   if (first == second) {
@@ -288,7 +287,7 @@ StateSource expand(LoadContext& context, const std::string& name, core::Mark mar
   return state;
 }
 
-// Names that a template's text may not take, found before it is used.
+// Reports names that a template must not use, even if it is never instantiated.
 void check_template(LoadContext& context, const core::YamlEntry& entry) {
   if (!core::check_name(entry, context.diagnostics, "the name of a template")) return;
   if (!core::expect_map(entry.value, "a template", context.diagnostics)) return;
@@ -313,7 +312,7 @@ void check_template(LoadContext& context, const core::YamlEntry& entry) {
   }
 }
 
-// `$name` that is left in a name or key is a parameter or an error.
+// A `$name` left in a name or key must be a parameter.
 void check_resolved_text(LoadContext& context, const core::YamlNode& node, std::string_view key) {
   const auto check = [&](const std::string& text, core::Mark mark) {
     const std::size_t at = text.find('$');

@@ -1,4 +1,4 @@
-// A behavior's file with its bases, as a tree; see context.h.
+// Loads a behavior's file with its bases as a tree; see context.h.
 #include <fmt/format.h>
 
 #include "behaviors/load/context.h"
@@ -8,7 +8,8 @@
 namespace footfall::behaviors {
 namespace {
 
-// `lift_time: 160 ms` over a base's {value, range, live}: not a map, so it replaces the map whole.
+// `lift_time: 160 ms` over a base's {value, range, live} replaces the whole map, because it is not
+// a map.
 void warn_lost_keys(const core::YamlHistory& history, core::Diagnostics& diagnostics) {
   constexpr std::string_view kSection = "parameters.";
   for (const core::YamlChange& change : history) {

@@ -1,5 +1,5 @@
-// What is written down and never used, and what is missing beside it: warnings, once all is loaded.
-// Not said when there are errors, which may be the reason.
+// Warnings about unused and missing items, after everything is loaded. Suppressed after errors,
+// which may be the cause.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void warn_stacks(LoadContext& context) {
   }
 }
 
-// `mark: step` counts steps: a behavior that has none, but a mark that is nearly that, has a typo.
+// `mark: step` counts steps: a behavior without it, but with a similar mark, probably has a typo.
 void warn_marks(LoadContext& context) {
   if (context.behavior.step >= 0) return;
   for (const auto& [name, mark] : context.marks) {

@@ -1,9 +1,9 @@
 // Contact transitions: two complete control laws and the weight between them. The torques are
-// blended by the whole-body controller, so both ends are exact ([Kim16] eqs (1)-(2),
+// blended by the whole-body controller, so both ends are exact ([Kim16] eqs. (1)-(2),
 // torque-continuous).
-//   releases:  w = (1 + cos(pi s))/2 of the set just left, from 1 in the first tick to 0
-//   loads:     w = (1 - cos(pi s))/2 of the set to come, from 0 to 1
-// with s = ticks in the state / ticks of `over`. The ramp is a cosine where the paper's is linear.
+//   releases:  w = (1 + cos(pi s))/2 of the previous set, from 1 in the first tick to 0
+//   loads:     w = (1 - cos(pi s))/2 of the next set, from 0 to 1
+// with s = ticks in the state / ticks of `over`. The ramp is a cosine, in the paper it is linear.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -49,12 +49,12 @@ void ControlMerge::begin_transition(const TransitionSpec& transition,
   } else {
     const ControlSpec& left = behavior_.controls[at(statechart_.control_before(transition.owner))];
     fill(*other_, control_.other, left, measure);
-    if (old_primary_->spec == &left) {  // in force until now: exactly its references
+    if (old_primary_->spec == &left) {  // active until now: keep its exact references
       std::copy_n(old_primary_->axes.begin(), old_set_->axis_count, other_->axes.begin());
       std::copy_n(old_primary_->knots.begin(), old_primary_->knot_count, other_->knots.begin());
       other_->knot_count = old_primary_->knot_count;
     } else {
-      advance(*other_, control_.other, measure);  // passed in no time: as it would have begun
+      advance(*other_, control_.other, measure);  // passed through within the tick: start it here
     }
     other_->frozen = true;
   }

@@ -1,4 +1,4 @@
-// Tasks in force and their references; see control_merge.h. Contact transitions:
+// Active tasks and their references; see control_merge.h. Contact transitions:
 // contact_transition.cc.
 #include "behaviors/machine/control_merge.h"
 
@@ -10,7 +10,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// The most knots that the tasks of one control spec may need: the entry and the points of each
+// Maximum number of knots needed by the tasks of one control spec: the entry and the points of each
 // axis.
 std::size_t knot_capacity(const Behavior& behavior) {
   std::size_t most = 0;
@@ -26,7 +26,7 @@ std::size_t knot_capacity(const Behavior& behavior) {
   return most;
 }
 
-// The arrays have room for far more than a behavior asks for.
+// Copies only the used part of the arrays, which have room for far more.
 void copy_in_force(const tasks::ControlSet& from, tasks::ControlSet& to) noexcept {
   to.contact_count = from.contact_count;
   to.task_count = from.task_count;
@@ -70,8 +70,8 @@ void ControlMerge::update(const Measure& measure, bool moved) noexcept {
   weigh_transition();
 }
 
-// The merged control is that of another configuration, or a state that says where a reference
-// starts or a contact transition begins was entered again.
+// Whether the merged control belongs to another configuration, or a state that starts a reference
+// or a contact transition was entered again.
 bool ControlMerge::changed() const noexcept {
   if (taken_over_) return true;
   const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
@@ -96,8 +96,8 @@ void ControlMerge::rebuild(const Measure& measure) noexcept {
   update_transition(spec, measure);
 }
 
-// The task as it was in force before (axis < 0), or one of its axes: in the set with the greater
-// weight first.
+// A task before this tick (axis < 0), or one of its axes: searched first in the set with the
+// greater weight.
 ControlMerge::Kept ControlMerge::find_kept(int instance, int axis) const noexcept {
   for (const bool other : {other_first_, !other_first_}) {
     if (other && !old_has_other_) continue;
@@ -162,13 +162,13 @@ void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec&
     out.fresh = kept.slot < 0;
     fill_axis(bank, set, command, spec, k, kept, measure);
   }
-  for (int k = 0; k < spec.axes.count; ++k) {  // when `entry` is known of all axes
+  for (int k = 0; k < spec.axes.count; ++k) {  // when `entry` of all axes is known
     if (bank.axes[at(command.first_axis + k)].begins) start_axis(bank, command, spec, k, measure);
   }
 }
 
-// The reference goes on if it is the same words in the same stay in their state, whatever else of
-// the task has changed; else it starts from what was the reference, or from what is measured.
+// The reference continues if its source and its state's entry are unchanged, whatever else of the
+// task has changed; otherwise it starts from the last reference, or from the measurement.
 void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
                              const tasks::TaskCommand& command, const TaskSpec& spec, int k,
                              const Kept& kept, const Measure& measure) noexcept {
@@ -194,7 +194,8 @@ void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
       return;
     }
     state.motion = old.motion;
-    // The same place seen from another origin: `frame` or the stance contacts may have changed.
+    // The same position relative to another origin: `frame` or the stance contacts may have
+    // changed.
     if (spec.frame == tasks::Frame::stance || before.spec->frame != spec.frame) {
       state.motion.pos +=
           measured(measure, spec, set, axis) - measured(measure, *before.spec, *kept.set, axis);
@@ -241,7 +242,8 @@ void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index,
   }
 }
 
-// A slot's value, or an expression's, which must stay within gains.ranges: else as it was before.
+// The value of a slot or of an expression; the latter must be within gains.ranges, otherwise the
+// previous value is kept.
 double ControlMerge::checked_gain(const AxisSpec& axis, int slot, std::size_t gain, double before,
                                   Bank& bank, const double* entry) noexcept {
   if (slot >= 0) return statechart_.context().parameters[slot];

@@ -1,6 +1,6 @@
-// The control that the active configuration asks for: contacts, tasks with references and gains,
-// internal forces, and the other control law while a contact transition is under way. Rebuilt when
-// states that control change or are entered again, evaluated in every tick; allocates nothing after
+// The control defined by the active configuration: contacts, tasks with references and gains,
+// internal forces, and the second control law during a contact transition. Rebuilt when states with
+// control change or are entered again, evaluated in every tick; allocates nothing after
 // construction.
 #pragma once
 
@@ -23,45 +23,46 @@ class ControlMerge {
  public:
   ControlMerge(const Behavior& behavior, Statechart& statechart);
 
-  // After the statechart's tick; `moved`: a transition was taken (or this is the first tick).
+  // Call after the statechart's tick; `moved`: a transition was taken (or this is the first tick).
   void update(const Measure& measure, bool moved) noexcept;
   const tasks::ActiveControl& control() const noexcept { return control_; }
-  // Goes on from the control of another behavior (control_take_over.cc), after the statechart did.
-  // same_configuration: that is the old one's; else what is in force starts anew.
+  // Bumpless transfer from the control of another behavior (control_take_over.cc), after that of
+  // the statechart. same_configuration: the configuration is unchanged; otherwise active references
+  // start anew.
   void take_over(const ControlMerge& old, const TakeOverMap& map, bool same_configuration) noexcept;
-  // The world's, flat unless set; before the first update.
+  // The world's walking surface, flat by default; set before the first update.
   void set_surface(const model::HeightSurface& surface) { surface_ = surface; }
 
  private:
-  // One task in force: whose reference it follows since when.
+  // One active task: the source of its reference and its start.
   struct TaskState {
     const TaskSpec* spec = nullptr;
     std::uint32_t owner_serial = 0;
   };
   struct AxisState {
     Segment segment;
-    std::int64_t start_tick = 0;         // of the segment; later than the task's after a new `to`
-    double over = 0.0;                   // s, of the whole trajectory
-    Motion motion;                       // the reference in force
-    bool begins = false;                 // its reference starts in this tick
-    int first_knot = 0, knot_count = 0;  // waypoints: into Bank::knots
+    std::int64_t start_tick = 0;         // of the segment; changes with a new `to`
+    double over = 0.0;                   // s, duration of the whole trajectory
+    Motion motion;                       // current reference
+    bool begins = false;                 // the reference starts in this tick
+    int first_knot = 0, knot_count = 0;  // waypoints: indices into Bank::knots
     double angle = 0.0, rate = 0.0;      // ellipse: rad since entry, rad/s
     double ramp = 0.0;                   // ellipse: s
     std::int64_t last_tick = 0;          // ellipse: of the angle
   };
-  // One set of tasks in force, with the same numbering as its tasks::ControlSet.
+  // One set of active tasks, with the same numbering as its tasks::ControlSet.
   struct Bank {
     const ControlSpec* spec = nullptr;
-    bool frozen = false;    // references stay as they are
-    bool reported = false;  // a value that is not finite was reported
+    bool frozen = false;    // references are kept constant
+    bool reported = false;  // a non-finite value was reported
     int task_count = 0;
     std::array<TaskState, core::kMaxTasks> tasks{};
     std::array<AxisState, core::kMaxAxes> axes{};
-    std::array<double, core::kMaxAxes> entry{};  // what each reference started from
+    std::array<double, core::kMaxAxes> entry{};  // start values of the references
     std::vector<Knot> knots;                     // sized at load
     int knot_count = 0;
   };
-  // A task, or one of its axes (slot), as it was in force before.
+  // A task, or one of its axes (slot), before this tick.
   struct Kept {
     const Bank* bank = nullptr;
     const tasks::ControlSet* set = nullptr;
@@ -69,11 +70,11 @@ class ControlMerge {
     int slot = -1;
   };
 
-  // Whether the transitions of this tick can have changed anything that is merged: else rebuild()
-  // would find everything as it is.
+  // Whether this tick's transitions may have changed the merged control; otherwise rebuild() is
+  // skipped.
   bool changed() const noexcept;
   void rebuild(const Measure& measure) noexcept;
-  // The contact transition under way is still the one that is asked for.
+  // Whether the current contact transition is still the required one.
   bool transition_goes_on(const ControlSpec& spec) const noexcept;
   const TaskSpec* successor(const TaskSpec& old, const ControlSpec& spec,
                             const TakeOverMap& map) const noexcept;
@@ -90,7 +91,7 @@ class ControlMerge {
   Kept find_kept(int instance, int axis) const noexcept;
   void advance(Bank& bank, tasks::ControlSet& set, const Measure& measure) noexcept;
   void advance_task(Bank& bank, tasks::ControlSet& set, int index, const Measure& measure) noexcept;
-  // References (reference.cc). `k`: which axis of the task.
+  // References (reference.cc). `k`: index of the task's axis.
   double measured(const Measure& measure, const TaskSpec& spec, const tasks::ControlSet& set,
                   int axis) const noexcept;
   void start_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
@@ -114,9 +115,9 @@ class ControlMerge {
   tasks::ActiveControl control_;
   model::HeightSurface surface_;
   bool old_has_other_ = false;
-  bool taken_over_ = false;   // what is in force is still laid out as in another behavior
-  bool stays_ = false;        // of a take-over: the configuration is the same
-  bool other_first_ = false;  // the other law has the greater weight: what it holds is kept
+  bool taken_over_ = false;   // the sets still have the layout of another behavior
+  bool stays_ = false;        // after a transfer: the configuration is the same
+  bool other_first_ = false;  // the second law has the greater weight: its references are kept
   int transition_ = -1;       // into Behavior::contact_transitions
   std::uint32_t transition_serial_ = 0;
   std::int64_t transition_periods_ = 0;

@@ -1,6 +1,6 @@
-// The control in force goes on in another behavior; see behaviors/compiled/take_over_map.h. What is
-// kept is laid out as it was in the old one; the next update merges it into what the new one asks
-// for, as after a transition.
+// Bumpless transfer of the control to another behavior; see behaviors/compiled/take_over_map.h. The
+// old sets are kept in their layout; the next update merges them into the new control, as after a
+// transition.
 #include <algorithm>
 
 #include "behaviors/compiled/take_over_map.h"
@@ -10,9 +10,9 @@
 namespace footfall::behaviors {
 namespace {
 
-const ControlSpec kOther;  // stands for a control that is not the new behavior's
+const ControlSpec kOther;  // represents a control of another behavior
 
-// A trajectory under way goes on whatever its words have become, if it is one of the same kind.
+// A running trajectory continues with changed parameters if its kind is the same.
 bool goes_on(const TaskSpec& old, const TaskSpec& now) noexcept {
   const ReferenceSpec& a = old.reference;
   const ReferenceSpec& b = now.reference;
@@ -21,7 +21,7 @@ bool goes_on(const TaskSpec& old, const TaskSpec& now) noexcept {
 
 }  // namespace
 
-// The task of a control spec that goes on from `old`; null: none does.
+// The task of a control spec that continues `old`; nullptr if absent.
 const TaskSpec* ControlMerge::successor(const TaskSpec& old, const ControlSpec& spec,
                                         const TakeOverMap& map) const noexcept {
   const int instance = map.instances[at(old.instance)];
@@ -47,7 +47,7 @@ void ControlMerge::take_over(const ControlMerge& old, const TakeOverMap& map,
     const bool whole = take_bank(*primary_, control_.primary, old, *old.primary_, spec, map);
     primary_->spec = whole ? &spec : &kOther;
   }
-  // A contact transition that its state has behind it does not begin again.
+  // A contact transition that is already complete in its state does not begin again.
   transition_ = spec.transition;
   if (transition_ < 0) return;
   const TransitionSpec& transition = behavior_.contact_transitions[at(transition_)];
@@ -64,7 +64,7 @@ void ControlMerge::take_over(const ControlMerge& old, const TakeOverMap& map,
   transition_periods_ = old.transition_periods_;
 }
 
-// Whether every task found its successor, so that the bank is as complete as it was.
+// Whether every task found its successor, so that the reference set is complete.
 bool ControlMerge::take_bank(Bank& bank, tasks::ControlSet& set, const ControlMerge& from,
                              const Bank& old, const ControlSpec& spec,
                              const TakeOverMap& map) noexcept {

@@ -1,4 +1,4 @@
-// Statechart, planners' calls and control of one behavior in one tick; see machine.h.
+// Statechart, planner calls and control of one behavior; see machine.h.
 #include "behaviors/machine/machine.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct Machine::Impl {
   const Behavior& behavior;
   core::SignalTable& signals;
   std::vector<double> values;        // parameters and gains
-  std::vector<double> known_values;  // of the last tick, for parameter.changed
+  std::vector<double> known_values;  // at the last tick, to detect parameter.changed
   Statechart statechart;
   ControlMerge control;
   PlannerCalls planners;
@@ -121,7 +121,7 @@ void Machine::Impl::raise_contacts(bool edges) noexcept {
   }
 }
 
-// Edits from outside since the last tick; what actions set is no edit.
+// Raises events for external edits since the last tick; changes by actions do not count.
 void Machine::Impl::raise_parameters() noexcept {
   for (std::size_t p = 0; p < behavior.parameters.size(); ++p) {
     const ParameterInfo& info = behavior.parameters[p];
@@ -138,7 +138,7 @@ const tasks::ActiveControl& Machine::control() const noexcept { return impl_->co
 bool Machine::finished() const noexcept { return impl_->statechart.finished(); }
 
 bool Machine::raise(int event) noexcept {
-  if (event < 0) return true;  // nothing listens to it
+  if (event < 0) return true;  // no transition listens to it
   if (impl_->outside.push(event)) return true;
   impl_->statechart.count_fault(core::Fault::event_overflow);
   const int overflow = impl_->behavior.event_overflow;

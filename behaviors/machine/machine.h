@@ -1,4 +1,4 @@
-// The statechart at run time together with the control it asks for: one tick() in the realtime
+// The statechart at run time together with the control that it selects: one tick() in the realtime
 // loop, between the model update and the whole-body controller. Allocates nothing after
 // construction.
 #pragma once
@@ -22,28 +22,28 @@ namespace footfall::behaviors {
 
 struct TakeOverMap;
 
-// Where the machine reads what a task measures now (references start "from what is measured").
+// Access to the current measurements of tasks (references start from the measurement).
 class Measure {
  public:
   virtual ~Measure() = default;
   // Position of one axis of a task type (m or rad); point: index into the model's points.
   virtual double position(tasks::TaskType type, int point, int axis) const noexcept = 0;
-  // Velocity of the same for positions (com_position, point_position, frame_pose's x y z).
+  // Velocity of the same axis, for positions (com_position, point_position, frame_pose's x y z).
   virtual double velocity(tasks::TaskType, int /*point*/, int /*axis*/) const noexcept {
     return 0.0;
   }
 };
 
-// Asked for by an `invoke` in this tick.
+// A request by an `invoke` in this tick.
 struct PlanRequest {
   int planner = 0;             // index into Behavior::planners
-  std::uint32_t sequence = 0;  // grows with each request; an exit cancels all older ones
+  std::uint32_t sequence = 0;  // incremented with each request; an exit cancels all older ones
   int stance = -1;             // contact indices
   int swing = -1;
   double switch_in = 0.0;  // s until the support changes, counted from now
 };
 
-// What came back.
+// A planner's answer.
 struct PlanAnswer {
   int planner = 0;
   std::uint32_t sequence = 0;
@@ -56,44 +56,47 @@ struct PlanAnswer {
 
 class Machine {
  public:
-  // `signals` is the run's table (values are read each tick and planner rows written), laid out by
-  // behavior.layout. Both must outlive the machine.
+  // `signals` is the run's table (values are read each tick and planner rows written), with the
+  // layout behavior.layout. Both must outlive the machine.
   Machine(const Behavior& behavior, core::SignalTable& signals);
   ~Machine();
 
-  // The world's walking surface, flat unless set; before start().
+  // The world's walking surface, flat by default; set before start().
   void set_surface(const model::HeightSurface& surface);
 
   // Enters the initial configuration at tick 0; signals hold the first measurement.
   void start(const Measure& measure) noexcept;
-  // One macro step (docs/behaviors.md 8.3), then the references of the active control.
-  // `tick` counts control periods since start (skipped ones included).
+  // One macro step (docs/behaviors.md 8.3), then the references of the active control. `tick`
+  // counts control periods since start (skipped ones included).
   void tick(std::int64_t tick, const Measure& measure) noexcept;
 
-  // Goes on from where the machine of another behavior is, between two ticks, instead of start():
-  // its configuration and clocks (Statechart::take_over), references, parameters' values, events
-  // that wait. The signals hold its last ones. Any number of times, each way.
+  // Bumpless transfer from the machine of another behavior, between two ticks and instead of
+  // start(): continues with its configuration and clocks (Statechart::take_over), references,
+  // parameter values and waiting events. The signals contain its last values. Can be repeated in
+  // both directions.
   void take_over(const Machine& old, const TakeOverMap& map) noexcept;
-  // Whether its configuration is one of this behavior's.
+  // Whether its configuration exists in this behavior.
   bool has_configuration_of(const Machine& old, const TakeOverMap& map) const noexcept;
 
   const tasks::ActiveControl& control() const noexcept;
   bool finished() const noexcept;  // a final child of the root was entered
 
-  // Outside events, by id (Behavior::find_event); false: the queue is full (counted, raised).
+  // Raises an external event by id (Behavior::find_event); false: the queue is full (counted,
+  // raised).
   bool raise(int event) noexcept;
-  std::size_t outside_room() const noexcept;  // how many more may be raised before the next tick
-  // Those that wait for the next tick, in order, at the end of `events` as far as it has room.
+  std::size_t outside_room() const noexcept;  // free places before the next tick
+  // Copies the external events waiting for the next tick, in order, to the end of `events`, as far
+  // as it has room.
   void copy_outside_events(std::vector<int>& events) const noexcept;
   // Fault events `fault.NAME`; with reaction safe_state the `safe` state is entered at this tick.
   void raise_fault(core::Fault fault, core::Reaction reaction) noexcept;
   void enter_safe() noexcept;  // docs/behaviors.md 8.10
 
-  // Requests of this tick (valid until the next tick) and the answers to earlier ones.
+  // Requests of this tick (valid until the next tick) and answers to earlier ones.
   std::span<const PlanRequest> plan_requests() const noexcept;
   void deliver(const PlanAnswer& answer) noexcept;
 
-  // Parameters and gains, flat; an edit writes here between two ticks.
+  // Parameters and gains, flat; edits are written here between two ticks.
   std::span<double> parameters() noexcept;
   std::span<const double> parameters() const noexcept;
 
@@ -103,20 +106,20 @@ class Machine {
   std::span<const int> active_states() const noexcept;
   std::span<const int> marks() const noexcept;
   std::span<const int> transitions_taken() const noexcept;
-  // Events that came to their turn in this tick, in order.
+  // Events processed in this tick, in order.
   std::span<const int> events_taken() const noexcept;
   // Texts logged in this tick; their pieces and fields are in Behavior::logs.
   std::span<const LogRecord> logs() const noexcept;
-  // What this tick asks of the scripts, in order (indices into Behavior::calls and events).
+  // Requests to scripts in this tick, in order (indices into Behavior::calls and events).
   std::span<const ScriptRequest> script_requests() const noexcept;
   bool is_active(int state) const noexcept;
-  // How often a state was entered so far, and what a transition's guard has given: bit 0 false,
-  // bit 1 true.
+  // Number of entries of a state so far, and values of a transition's guard: bit 0 false, bit 1
+  // true.
   std::uint32_t entries(int state) const noexcept;
   std::uint8_t guard_outcomes(int transition) const noexcept;
-  // The tick at which a transition's `after` holds; -1: it has none, or was taken by it already.
+  // The tick at which a transition's `after` expires; -1: none, or already taken.
   std::int64_t deadline(int transition) const noexcept;
-  // What expressions over states, parameters and time read now.
+  // Current inputs of expressions over states, parameters and time.
   const EvaluationContext& context() const noexcept;
   const core::FaultCounters& faults() const noexcept;
 

@@ -96,7 +96,7 @@ void PlannerCalls::update_call(const InvokeInfo& invoke, Call& call) noexcept {
       every < 0 ? -1 : std::max(call.next_ask + std::max<std::int64_t>(every, 1), tick + 1);
 }
 
-// An exit cancels; where a late plan is to be replaced, what follows needs a plan now.
+// An exit cancels the request; if a late plan is to be replaced, the next state needs a plan now.
 void PlannerCalls::leave(const InvokeInfo& invoke, Call& call) noexcept {
   if (call.count > 0 && invoke.closed_form) {
     replace_late(invoke, call.nth(call.count - 1));
@@ -113,7 +113,7 @@ void PlannerCalls::ask(const InvokeInfo& invoke, Call& call) noexcept {
     statechart_.report_execution_error();
     return;
   }
-  if (at(call.count) == call.ring.size()) call.drop(1);  // it has waited for a second
+  if (at(call.count) == call.ring.size()) call.drop(1);  // unanswered for one second
   const std::int64_t deadline = invoke.deadline < 0 ? -1 : ticks_of(invoke.deadline, 1.0);
   Outstanding& request = call.nth(call.count++);
   request.sequence = ++sequence_;
@@ -130,7 +130,7 @@ bool PlannerCalls::deliver(const PlanAnswer& answer) noexcept {
     while (found < call.count && call.nth(found).sequence != answer.sequence) ++found;
     if (found == call.count) continue;
     const double switch_time = call.nth(found).switch_time;
-    call.drop(found + 1);  // older requests are answered by this one
+    call.drop(found + 1);  // this answer also covers older requests
     const PlannerInfo& planner = behavior_.planners[at(answer.planner)];
     const bool good =
         answer.ok && std::isfinite(answer.target[0] + answer.target[1] + answer.target[2]);
@@ -141,7 +141,7 @@ bool PlannerCalls::deliver(const PlanAnswer& answer) noexcept {
   return false;
 }
 
-// The plan that did not come is computed here, from what is measured now.
+// Computes the missing plan here, from the current measurement.
 void PlannerCalls::replace_late(const InvokeInfo& invoke, const Outstanding& request) noexcept {
   const PlannerInfo& planner = behavior_.planners[at(invoke.planner)];
   statechart_.count_fault(core::Fault::planner_late);

@@ -1,5 +1,5 @@
-// The active states' `invoke`s at run time: when a planner is asked, what its answers write, what
-// happens when they are late. Allocates nothing after construction.
+// The active states' `invoke`s at run time: requests to planners, signals written from answers,
+// reactions to late answers. Allocates nothing after construction.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace footfall::behaviors {
 
 struct TakeOverMap;
 
-// The planner's settings in this tick: `kappa: $name` reads its parameter, live.
+// The planner's settings in this tick: `kappa: $name` uses the current value of its parameter.
 FootPlannerSpec spec_in_force(const PlannerInfo& planner,
                               std::span<const double> parameters) noexcept;
 
@@ -24,14 +24,14 @@ class PlannerCalls {
   PlannerCalls(const Behavior& behavior, Statechart& statechart, core::SignalTable& signals,
                std::span<const double> parameters);
 
-  // Remembers on which side of each other the feet are (the signals hold the first measurement).
+  // Records the lateral order of the feet (the signals contain the first measurement).
   void start() noexcept;
-  // After the statechart's tick: exits cancel, deadlines pass, planners are asked.
+  // Call after the statechart's tick: handles exits, deadlines and new requests.
   void update() noexcept;
-  // Writes the answer's signals; false: it was cancelled, late, or never asked for.
+  // Writes the answer's signals; false if it was cancelled, is late, or was never requested.
   bool deliver(const PlanAnswer& answer) noexcept;
 
-  // Goes on asking as the calls of another behavior did; what they wait for is not waited for here.
+  // Continues the calls of another behavior; its pending requests are not awaited.
   void take_over(const PlannerCalls& old, const TakeOverMap& map) noexcept;
 
   std::span<const PlanRequest> requests() const noexcept { return requests_; }
@@ -47,9 +47,9 @@ class PlannerCalls {
   struct Call {
     bool active = false;
     std::uint32_t serial = 0;    // of the state's entry
-    std::int64_t next_ask = -1;  // tick, -1: not any more
-    // Requests without an answer yet, oldest first, in a ring: room for one a tick for a second, so
-    // that an answer always finds its request however late it is.
+    std::int64_t next_ask = -1;  // tick, -1: none
+    // Unanswered requests, oldest first, in a ring buffer with room for one a tick during one
+    // second, so that even a late answer finds its request.
     int first = 0;
     int count = 0;
     std::vector<Outstanding> ring;
@@ -69,7 +69,7 @@ class PlannerCalls {
   void replace_late(const InvokeInfo& invoke, const Outstanding& request) noexcept;
   void write(int planner, const PlanAnswer& answer, double switch_time, bool late) noexcept;
   void emit(int event) noexcept;
-  // Ticks that a time lasts; -1 and error.execution if it is no valid time.
+  // A time in ticks; -1 and error.execution if it is invalid.
   std::int64_t ticks_of(int expression, double factor) noexcept;
 
   const Behavior& behavior_;
@@ -80,7 +80,7 @@ class PlannerCalls {
   std::vector<PlanRequest> requests_;
   std::vector<int> events_;
   std::array<double, core::kMaxContacts>
-      lateral_{};  // m, of each contact at the start, to the left
+      lateral_{};  // m, lateral position of each contact at the start, positive left
   std::uint32_t sequence_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// References of the tasks in force: where they start, where they are now; see control_merge.h.
+// References of active tasks: start and current values; see control_merge.h.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-// The second and further axes of an ellipse lag a quarter of a turn behind the first.
+// Phase of an ellipse's axis, rad: the second and further axes lag a quarter turn behind the first.
 double quarter(const Behavior& behavior, const TaskSpec& spec, int k) noexcept {
   for (int j = 0; j < k; ++j) {
     if (behavior.axes[at(spec.axes.first + j)].radius >= 0) return 0.25 * kTurn;
@@ -21,7 +21,8 @@ double quarter(const Behavior& behavior, const TaskSpec& spec, int k) noexcept {
 
 }  // namespace
 
-// In the task's frame: from the mean of the stance contacts, or on the heading's axes.
+// The measured value in the task's frame: relative to the mean of the stance contacts, or along the
+// heading's axes.
 double ControlMerge::measured(const Measure& measure, const TaskSpec& spec,
                               const tasks::ControlSet& set, int axis) const noexcept {
   const double world = measure.position(spec.type, spec.point, axis);
@@ -43,7 +44,8 @@ double ControlMerge::measured(const Measure& measure, const TaskSpec& spec,
   return world;
 }
 
-// `over`, `at` and `to` are read here, at entry; a value that is not finite makes the axis stay.
+// `over`, `at` and `to` are read here, at entry; with a non-finite value the axis keeps its
+// position.
 void ControlMerge::start_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec,
                               int k, const Measure& measure) noexcept {
   if (spec.reference.kind != ReferenceSpec::Kind::trajectory) return;
@@ -68,7 +70,8 @@ void ControlMerge::start_axis(Bank& bank, const tasks::TaskCommand& command, con
         statechart_.report_execution_error();
         state.ramp = context.period;
       }
-      // Without a goal the centre is the place at entry; a speed dies out while the ellipse grows.
+      // Without a goal the centre is the position at entry; an initial velocity decays while the
+      // ellipse grows.
       if (reference.over < 0) state.over = state.ramp;
       shape = Shape::minimum_jerk;
       break;
@@ -90,8 +93,8 @@ void ControlMerge::start_axis(Bank& bank, const tasks::TaskCommand& command, con
   state.segment = make_segment(shape, start, to, end, state.over);
 }
 
-// The points that name this axis, with the entry before them. Of two that are not in order the
-// later one counts.
+// The points that name this axis, preceded by the entry. Of two points out of order, the later one
+// counts.
 void ControlMerge::start_waypoints(Bank& bank, const tasks::TaskCommand& command,
                                    const TaskSpec& spec, int k, double over) noexcept {
   const double* entry = &bank.entry[at(command.first_axis)];
@@ -115,7 +118,7 @@ void ControlMerge::start_waypoints(Bank& bank, const tasks::TaskCommand& command
     knots[count] = {time, value_or(point.to[at(k)], knots[count - 1].pos, bank, entry), 0.0, 0.0};
     ++count;
   }
-  if (count == 1) knots[0].vel = 0.0;  // no point names it: it stays
+  if (count == 1) knots[0].vel = 0.0;  // no point names it: keep the position
   if (count > 1) knots[count - 1].vel = value_or(axis.end_velocity, 0.0, bank, entry);
   state.knot_count = count;
   bank.knot_count += count;
@@ -143,7 +146,7 @@ void ControlMerge::advance_axis(Bank& bank, const tasks::TaskCommand& command, c
   out.ref = state.motion.pos;
   out.ref_vel = state.motion.vel;
   out.ref_acc = state.motion.acc;
-  if (out.slope != 0.0) {  // of p - slope x: what x brings is not to be asked for twice
+  if (out.slope != 0.0) {  // axis is p - slope x: do not command the part of x twice
     out.ref_vel -= out.slope * measure.velocity(spec.type, spec.point, 0);
   }
 }
@@ -174,7 +177,7 @@ Motion ControlMerge::sample_axis(Bank& bank, const tasks::TaskCommand& command,
     motion = {motion.pos + turn.pos, motion.vel + turn.vel, motion.acc + turn.acc};
   }
   if (spec.reference.shape == Shape::surface) {
-    // Chain rule; what f' ẍ would add is in the row itself, which is that of z - f' x.
+    // Chain rule; the term f' ẍ is part of the row itself, which is that of z - f' x.
     const double speed = measure.velocity(spec.type, spec.point, 0);
     const auto ground = surface_.at(measure.position(spec.type, spec.point, 0));
     out.slope = ground.slope;
@@ -185,7 +188,7 @@ Motion ControlMerge::sample_axis(Bank& bank, const tasks::TaskCommand& command,
   return motion;
 }
 
-// A changed `to` starts a new segment from where the reference is, for the time that is left.
+// A changed `to` starts a new segment from the current reference, for the remaining time.
 void ControlMerge::retarget(Bank& bank, const TaskSpec& spec,
                             const tasks::TaskCommand& command) noexcept {
   const EvaluationContext& context = statechart_.context();

@@ -17,7 +17,7 @@ Vector2 to_world(const Vector2& v, double c, double s) noexcept {
 }
 
 // Time after the switch until the lateral speed away from the stance foot reaches `speed`, for the
-// pendulum y(t) = y C + ẏ/ω S: ẏ(t) = ẏ C + ω y S. 0 if it is already there, or if the CoM will
+// pendulum y(t) = y C + ẏ/ω S: ẏ(t) = ẏ C + ω y S. 0 if it is already reached, or if the CoM will
 // pass over the foot and never turn.
 double time_to_speed(double y, double yd, double omega, double speed, double limit) noexcept {
   const double v = y >= 0.0 ? yd : -yd;

@@ -1,5 +1,5 @@
-// What the steps of saving values share: where a value is written, how that text changes, whether
-// the result is what was asked for. Load time only.
+// Steps of saving values: find where a value is written, edit that text, verify the result. Load
+// time only.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@ namespace footfall::behaviors {
 
 using KeyPath = std::vector<std::string>;  // keys from the root of a tree inwards
 
-// A behavior as its files have it, compiled; nodes and marks are those of `context`.
+// A behavior compiled from its files; nodes and marks refer to `context`.
 struct SaveSource {
   SaveSource(const LoadOptions& options, core::Diagnostics& diagnostics)
       : context(behavior, options, diagnostics) {}
@@ -23,41 +23,41 @@ struct SaveSource {
   LoadContext context;
 };
 
-// Where the value of a parameter or gain is written.
+// Location of a parameter's or gain's value.
 struct ValueHome {
-  const core::YamlNode* node = nullptr;  // a quantity, a list or a map of them
-  std::vector<std::string> axes;         // names of its values, if they have some
-  KeyPath path;  // to the node; empty: it is in the tree more than once, or not as it is in force
+  const core::YamlNode* node = nullptr;  // a quantity, or a list or map of quantities
+  std::vector<std::string> axes;         // names of its values, if any
+  KeyPath path;  // of the node; empty: several times in the tree, or not in its effective form
 };
 
-// A parameter that gets other values.
+// A parameter with new values.
 struct Wanted {
   int parameter = -1;
-  std::vector<double> values;  // all of them, SI
+  std::vector<double> values;  // all its values, SI
   ValueHome home;
 };
 
-// One change of text: of a scalar, or a new entry of a map.
+// One text edit: of a scalar, or a new entry of a map.
 struct NodeEdit {
   const core::YamlNode* node = nullptr;  // the scalar, or the map
-  std::string key;                       // of the new entry; empty: the scalar changes
-  core::Mark near{};                     // a place in the file that the entry goes to
+  std::string key;                       // key of the new entry; empty: edit of the scalar
+  core::Mark near{};                     // a position in the file that gets the new entry
   std::string text;                      // flow YAML
 };
 
-// A plan while it is being made.
+// A save plan under construction.
 struct SavePlanner {
   const SaveSource& source;
   const core::Diagnostics& files;  // names of the source's files
   SavePlan& plan;
-  std::string overlay{};  // identity of the only file that may change, if there is one
+  std::string overlay{};  // identity of the only file that may change; empty: any
   std::vector<Wanted> wanted{};
-  std::vector<KeyPath> allowed{};  // what may differ in the tree
-  // A file that changes.
+  std::vector<KeyPath> allowed{};  // paths that may differ in the tree
+  // A changed file.
   struct File {
     core::FileChange change;
     std::vector<core::TextEdit> edits;  // of scalars
-    std::vector<std::string> owners;    // of the edits: parameters
+    std::vector<std::string> owners;    // parameters of the edits
     struct Addition {
       KeyPath path;
       std::string text, name;
@@ -75,21 +75,21 @@ struct SavePlanner {
 
 // text_edits.cc: the texts that change for one parameter, each in the file that it belongs to.
 void place_edits(SavePlanner& planner, const Wanted& wanted);
-// A file that is to change, read at its first use; nullptr and a refusal if it cannot be changed.
+// The file to be changed, read on first use; nullptr and a refusal if it cannot be changed.
 SavePlanner::File* open_file(SavePlanner& planner, const std::string& path, core::Mark mark,
                              const std::string& name);
-// Makes a file's changed text; false and a refusal if it cannot be made.
+// Creates a file's changed text; false and a refusal if impossible.
 bool finish_file(SavePlanner& planner, SavePlanner::File& file);
-// A path that two names of one file have in common.
+// Canonical path: equal for two names of the same file.
 std::string identity(const std::string& path);
 
 // places.cc
 ValueHome find_home(const SaveSource& source, const ParameterInfo& info);
-// The texts that give `wanted` where it is written now; only what differs bit for bit changes.
+// The edits that write `wanted` in place; only values that differ bit for bit change.
 std::vector<NodeEdit> edits_in_place(const SaveSource& source, const Wanted& wanted);
-// The value as a whole: what stands under its path in a file that has none of it.
+// The complete value as text, for a file that does not contain it yet.
 std::string whole_text(const SaveSource& source, const Wanted& wanted);
-// The paths at which a tree has a node with this mark.
+// All paths of nodes with this mark in a tree.
 std::vector<KeyPath> paths_of(const core::YamlNode& root, const core::YamlNode& node);
 bool begins_with(const KeyPath& path, const KeyPath& head);
 
@@ -102,7 +102,7 @@ std::vector<std::string> reasons_against_result(const SaveSource& old, const std
                                                 const std::vector<KeyPath>& allowed,
                                                 std::vector<std::string>& notes);
 
-// Whether two doubles are the same 64 bits.
+// Whether two doubles have identical bits.
 bool same_bits(double a, double b);
 
 }  // namespace footfall::behaviors

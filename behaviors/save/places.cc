@@ -1,4 +1,4 @@
-// Where values are written, and the texts that change them; see parts.h.
+// Locations of values, and the edits that change them; see parts.h.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -50,9 +50,9 @@ ValueHome home_of_parameter(const SaveSource& source, const std::string& name) {
   return home;
 }
 
-// The values of a map by name: which entry speaks of each, nullptr if none.
+// The values of a map by name: the entry that applies to each, nullptr if none.
 std::vector<const core::YamlEntry*> entries_of(const ValueHome& home) {
-  core::Diagnostics ignored;  // it has been loaded without an error
+  core::Diagnostics ignored;  // the file was loaded without error before
   return core::match_names(*home.node, home.axes, "axis", ignored);
 }
 
@@ -69,7 +69,8 @@ std::string key_and_value(const std::string& key, const std::string& value) {
   return core::to_flow_yaml(node) + ": " + value;
 }
 
-// One number for all that becomes one for each: a list; of joints, a map in which `*` keeps it.
+// Replaces a number shared by all axes by one for each: a list; for joints a map whose `*` keeps
+// it.
 std::string spread_text(const SaveSource& source, const Wanted& wanted, const std::string& like) {
   const double old = source.behavior.values[static_cast<std::size_t>(
       source.behavior.parameters[static_cast<std::size_t>(wanted.parameter)].slot)];
@@ -86,8 +87,8 @@ std::string spread_text(const SaveSource& source, const Wanted& wanted, const st
   return joints ? "{" + out + "}" : "[" + out + "]";
 }
 
-// An entry that serves several joints keeps its number while one of them does; the others get
-// entries of their own.
+// An entry that applies to several joints keeps its number as long as one of them needs it; the
+// others get their own entries.
 void edit_map(const Wanted& wanted, const double* old, std::vector<NodeEdit>& edits) {
   const core::YamlNode& node = *wanted.home.node;
   const auto entries = entries_of(wanted.home);
@@ -144,7 +145,7 @@ ValueHome find_home(const SaveSource& source, const ParameterInfo& info) {
   home.node = entry.node->find(info.name.substr(dot + 1));
   home.axes = entry.axes;
   if (home.node == nullptr) return home;
-  // In a table by its name; written in a task, by its place.
+  // Gains of a table are found by name, gains written in a task by position.
   const std::string& name = found->first;
   const std::size_t table = name.find('.') + 1, task = name.find('.', table) + 1;
   const KeyPath in_table = {"gains", name.substr(table, task - 1 - table), name.substr(task),

@@ -138,7 +138,7 @@ void place_edits(SavePlanner& planner, const Wanted& wanted) {
       add_entry(planner, wanted, planner.path_of(mark), mark, keys, edit.text);
       continue;
     }
-    // An argument of a template stands elsewhere than what it is put into.
+    // The argument of a template is written elsewhere than the place it is substituted into.
     const auto paths = paths_of(planner.source.context.root, *edit.node);
     const auto in_home = [&](const KeyPath& path) {
       return !home.path.empty() && begins_with(path, home.path);

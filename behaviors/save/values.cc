@@ -1,4 +1,4 @@
-// Values back into the files that they came from; see values.h.
+// Writes values back to the files that define them; see values.h.
 #include "behaviors/save/values.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Why there is no parameter of this name.
+// Reason why there is no parameter with this name.
 std::string unknown_reason(const SaveSource& source, const std::string& name) {
   const std::size_t dot = name.rfind('.');
   if (dot != std::string::npos) {
@@ -39,7 +39,7 @@ std::string unknown_reason(const SaveSource& source, const std::string& name) {
   return "there is no such parameter or gain" + core::did_you_mean(name, names);
 }
 
-// Why a parameter cannot have these values; empty: it can.
+// Reason why a parameter cannot have these values; empty if it can.
 std::string reason_against(const ParameterInfo& info, const std::vector<double>& values) {
   if (info.variable) return "it is a variable, which actions set: it is never saved";
   for (const double value : values) {
@@ -55,10 +55,10 @@ std::string reason_against(const ParameterInfo& info, const std::vector<double>&
   return "";
 }
 
-// The parameters that get other values, from what is asked for by name.
+// Collects the parameters with new values from requests by name.
 void collect_wanted(SavePlanner& planner, const std::vector<SavedValue>& values) {
   const Behavior& behavior = planner.source.behavior;
-  std::map<int, std::vector<std::optional<double>>> asked;  // by parameter, by component
+  std::map<int, std::vector<std::optional<double>>> asked;  // by parameter and component
   for (const SavedValue& value : values) {
     const ParameterPart part = behavior.find_parameter_part(value.name);
     if (part.parameter < 0) {
@@ -100,8 +100,7 @@ void collect_wanted(SavePlanner& planner, const std::vector<SavedValue>& values)
   }
 }
 
-// How `overlay` names its base: beside it, in a library by its name, else by a path from its
-// folder.
+// Value of `base:` in `overlay`: a file beside it, a library name, else a relative path.
 std::string base_text(const std::string& overlay, const std::string& base,
                       const LoadOptions& options) {
   const fs::path folder = fs::path(identity(overlay)).parent_path();
@@ -123,13 +122,13 @@ std::string base_text(const std::string& overlay, const std::string& base,
   return core::to_flow_yaml(node);
 }
 
-// The behavior as `path` has it; false and errors if it does not load.
+// Loads the behavior at `path`; false and errors on failure.
 bool load_source(SaveSource& source, const std::string& path, core::Diagnostics& diagnostics) {
   core::YamlNode root = load_tree(path, source.context.options, diagnostics);
   return compile_behavior(source.context, std::move(root), path);
 }
 
-// Whether a file is among those that a load has read.
+// Whether a file was read during a load.
 bool was_read(const core::Diagnostics& files, const std::string& path) {
   for (int k = 0; k < files.file_count(); ++k) {
     if (identity(files.file(k)) == identity(path)) return true;

@@ -1,5 +1,5 @@
-// Values of a running behavior back into its YAML: planned and checked in memory first, then shown,
-// then written. Load-time tools only.
+// Saves values of a running behavior to its YAML: plans and verifies the changes in memory, shows
+// them, then writes. Load-time tools only.
 #pragma once
 
 #include <string>
@@ -13,48 +13,48 @@ namespace footfall::behaviors {
 
 // New values of a parameter or gain, or of one of its components (`goal.y`).
 struct SavedValue {
-  std::string name;            // as in Behavior::parameters
-  std::vector<double> values;  // SI, as many as it has
+  std::string name;            // name in Behavior::parameters
+  std::vector<double> values;  // SI, all its values
 };
 
-// One place that changes, for people.
+// One changed place, for display.
 struct SavedPlace {
   std::string name;                // parameter or gain
-  std::string file;                // where its value is written
-  int line = 0, column = 0;        // of the old text; 0: there was none, the value is new there
+  std::string file;                // file that contains its value
+  int line = 0, column = 0;        // position of the old text; 0 if the value is new there
   std::string old_text, new_text;  // as written: `145 ms`
 };
 
-// What would be written. `refusals` not empty: nothing will be.
+// Planned changes. Nothing is written unless `refusals` is empty.
 struct SavePlan {
-  std::vector<core::FileChange> files;  // that change; none: every value is the file's own already
+  std::vector<core::FileChange> files;  // changed files; empty if all files already have the values
   std::vector<SavedPlace> places;
   std::vector<std::string> refusals;  // `file:line:column: NAME: reason`, one for each value
-  std::vector<std::string> notes;     // what the person should know before saying yes
+  std::vector<std::string> notes;     // to be shown before confirmation
 
   bool refused() const { return !refusals.empty(); }
 };
 
-// Plans to write `values` into the file at `path`, each where it came from: in that file or in one
-// of its bases. With `overlay` (not empty) into that file instead: a new one gets `base: PATH` and
-// only what differs; one that is there must have the behavior among its bases, or be it, and is
-// edited in place. Values that the file has already change nothing.
+// Plans to write `values` to the behavior file at `path`, each where it is defined: in that file or
+// in one of its bases. With `overlay` (if not empty) all go to that file instead: a new one gets
+// `base: PATH` and only the differences; an existing one must be the behavior or have it among its
+// bases, and is edited in place. Values equal to the file's change nothing.
 //
-// options.set is not applied: what `--set` gave comes from no file and is written only if it is
-// among `values`. Refused, with the reason: unknown names, variables, values out of range or given
-// by an expression, texts that several values share and that would not all agree. Nothing is
-// planned that has not been loaded, from memory, to exactly these values bit for bit, with every
-// other value of the file (or overlay) as before. Problems of the files go to `diagnostics`; the
-// plan then is refused too.
+// options.set is not applied: values of `--set` are not defined in a file and are written only if
+// they are among `values`. Refused, with the reason: unknown names, variables, values that are out
+// of range or given by an expression, texts shared by several values that would have to differ.
+// Every plan has been verified by loading it from memory: exactly these values bit for bit, every
+// other value of the file (or overlay) unchanged. Problems of the files are added to `diagnostics`;
+// the plan is then refused, too.
 SavePlan plan_save(const std::string& path, const LoadOptions& options,
                    const std::vector<SavedValue>& values, const std::string& overlay,
                    core::Diagnostics& diagnostics);
 
-// The plan as `diff -u` shows it, file by file.
+// The plan in the format of `diff -u`, file by file.
 std::string unified_diff(const SavePlan& plan);
 
-// Writes the plan's files, all or none, atomically; refused if one has changed since it was
-// planned. Returns the reasons against it; none: it is done.
+// Writes the plan's files atomically, all or none; refused if one has changed since planning.
+// Returns the reasons for refusal; empty if everything was written.
 std::vector<std::string> write_saved(const SavePlan& plan);
 
 }  // namespace footfall::behaviors

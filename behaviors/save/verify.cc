@@ -1,4 +1,4 @@
-// Whether changed files load to what was asked for, and to nothing else; see parts.h.
+// Verifies that changed files load to exactly the requested values; see parts.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 std::string path_text(const KeyPath& path) { return fmt::format("{}", fmt::join(path, ".")); }
 
-// The first path at which two trees differ, but for what is allowed.
+// The first path at which two trees differ, except for allowed paths.
 std::optional<KeyPath> first_difference(const core::YamlNode& a, const core::YamlNode& b,
                                         KeyPath& path, const std::vector<KeyPath>& allowed) {
   const auto is_allowed = [&](const KeyPath& head) { return begins_with(path, head); };
@@ -46,7 +46,7 @@ bool same_parameter(const ParameterInfo& a, const ParameterInfo& b) {
          a.variable == b.variable && a.gain == b.gain && a.bare == b.bare;
 }
 
-// The first error as `file:line:column: text`.
+// The first error in the form `file:line:column: text`.
 std::string first_error(const core::Diagnostics& diagnostics) {
   for (const core::Diagnostic& item : diagnostics.sorted()) {
     if (item.severity != core::Severity::error) continue;
@@ -77,12 +77,13 @@ void compare_values(const Behavior& old, const Behavior& now, const std::vector<
   }
 }
 
-// Values that a running behavior bears may be such that `run` refuses to begin with them.
+// Notes new physics problems: a running behavior tolerates values with which `run` refuses to
+// start.
 void note_physics(const Behavior& old, const Behavior& now, core::Diagnostics& diagnostics,
                   std::vector<std::string>& notes) {
   core::Diagnostics before = diagnostics;
   check_physics(old, before);
-  if (before.has_errors()) return;  // it was so before
+  if (before.has_errors()) return;  // unchanged by the save
   check_physics(now, diagnostics);
   if (!diagnostics.has_errors()) return;
   notes.push_back("with these values `run` refuses it: " + first_error(diagnostics));

@@ -1,4 +1,4 @@
-// The table `footfall` of a script; see script.h.
+// The table `footfall` available to scripts; see script.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr std::size_t kMaxAnswers = 1000;  // events, edits or messages of one call
+constexpr std::size_t kMaxAnswers = 1000;  // limit of events, edits or messages of one call
 
 using Body = int (*)(lua_State*, ScriptState&, std::string&);
 
-// Runs a body; the problem it names becomes Lua's error, with the script's line.
+// Runs a body; a problem that it reports becomes a Lua error with the script's line.
 template <Body body>
 int guarded(lua_State* lua) {
   std::string problem;
@@ -27,7 +27,7 @@ int guarded(lua_State* lua) {
   return lua_error(lua);
 }
 
-// The text of argument `index`, empty and a problem otherwise.
+// The text of argument `index`; empty and a problem otherwise.
 std::string text_argument(lua_State* lua, int index, const char* what, std::string& problem) {
   if (lua_type(lua, index) == LUA_TSTRING) return lua_tostring(lua, index);
   problem = fmt::format("expected {}, got {}", what, luaL_typename(lua, index));
@@ -163,7 +163,7 @@ int api_log(lua_State* lua, ScriptState& state, std::string& problem) {
   if (!in_call(state, problem)) return 0;
   std::size_t length = 0;
   const char* text = luaL_tolstring(lua, 1, &length);
-  constexpr std::size_t kLongest = 1000;  // bytes of a message
+  constexpr std::size_t kLongest = 1000;  // bytes, maximum length of a message
   if (has_room(state.answer->messages.size(), problem)) {
     state.answer->messages.emplace_back(text, std::min(length, kLongest));
   }

@@ -1,5 +1,5 @@
-// The libraries of a script: Lua's own without what loads code, reads a clock or, unless the run
-// allows it, reaches files and processes.
+// Libraries available to scripts: Lua's own without functions that load code, read a clock or,
+// unless the run allows it, access files and processes.
 #include <lua.hpp>
 
 #include "behaviors/script/state.h"
@@ -19,13 +19,15 @@ void remove(lua_State* lua, const char* table, std::initializer_list<const char*
 void open_os(lua_State* lua, const ScriptAccess& access) {
   luaL_requiref(lua, LUA_OSLIBNAME, luaopen_os, 1);
   lua_pop(lua, 1);
-  // A run repeats bit for bit: no clocks, no environment; and the process is not the script's.
+  // Runs must be reproducible bit for bit: no clocks, no environment; and scripts must not end the
+  // process.
   remove(lua, LUA_OSLIBNAME, {"clock", "date", "time", "getenv", "setlocale", "exit", "difftime"});
   if (!access.files) remove(lua, LUA_OSLIBNAME, {"remove", "rename", "tmpname"});
   if (!access.processes) remove(lua, LUA_OSLIBNAME, {"execute"});
 }
 
-// A name whose use says what the run would have to allow.
+// Placeholder of a library that is not allowed: using it raises an error that states how to allow
+// it.
 constexpr const char* kGuard = R"(
 local name, why = ...
 _G[name] = setmetatable({}, {__index = function(_, key)
@@ -40,7 +42,7 @@ void guard(lua_State* lua, const char* name, const char* why) {
   lua_call(lua, 2, 0);
 }
 
-// Sorted iteration: Lua's own order changes from process to process.
+// Sorted iteration, because Lua's own order differs between processes.
 constexpr const char* kPairs = R"(
 local next, type, sort, rawtype = next, type, table.sort, math.type
 function pairs(t)

@@ -1,5 +1,5 @@
-// Lua's state, its limits and its calls; see script.h. Debian's C++ build of Lua raises its errors
-// as exceptions, so C++ objects on the way are destroyed.
+// Lua's state, its limits and its calls; see script.h. Debian's C++ build of Lua raises errors as
+// exceptions, so that C++ objects are destroyed during unwinding.
 #include "behaviors/script/script.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr int kHookInterval = 1000;  // instructions between two looks at the budget
+constexpr int kHookInterval = 1000;  // instructions between two checks of the budget
 const char kStateKey = 0;            // its address is the registry key
 
-// Lua's allocator with a ceiling.
+// Lua allocator with a limit.
 void* allocate(void* user, void* old, std::size_t old_size, std::size_t size) {
   auto& state = *static_cast<ScriptState*>(user);
   const std::size_t held = old == nullptr ? 0 : old_size;
@@ -31,7 +31,7 @@ void* allocate(void* user, void* old, std::size_t old_size, std::size_t size) {
   return block;
 }
 
-// Once the budget is spent every instruction fails, so that a script's own pcall cannot go on.
+// Once the budget is used up every instruction fails, so that a script's own pcall cannot continue.
 void count_instructions(lua_State* lua, lua_Debug*) {
   ScriptState& state = state_of(lua);
   state.instructions_left -= kHookInterval;
@@ -41,7 +41,7 @@ void count_instructions(lua_State* lua, lua_Debug*) {
   luaL_error(lua, "stopped: it ran longer than its instructions allow");
 }
 
-// `script:12: text` of Lua's message.
+// Parses `script:12: text`, the format of Lua's messages.
 ScriptError split_message(const char* message) {
   ScriptError error{0, message == nullptr ? "unknown error" : message};
   constexpr std::string_view kName = "script:";
@@ -53,7 +53,7 @@ ScriptError split_message(const char* message) {
   return error;
 }
 
-// Runs the function on top of the stack with `arguments` arguments under a new budget.
+// Runs the function on top of the stack with `arguments` arguments and a new budget.
 bool run_protected(ScriptState& state, int arguments, ScriptError& error) {
   state.instructions_left = state.settings.instructions;
   lua_sethook(state.lua, count_instructions, LUA_MASKCOUNT, kHookInterval);
@@ -72,7 +72,7 @@ int open_protected(lua_State* lua) {
   return 0;
 }
 
-// The names that exist before any file is loaded.
+// Lists the names that exist before any file is loaded.
 int list_globals(lua_State* lua, std::vector<std::string>& names, bool functions_only) {
   lua_pushglobaltable(lua);
   lua_pushnil(lua);
@@ -92,7 +92,7 @@ struct Script::Impl {
   ScriptState state;
   std::vector<std::string> built_in;
 
-  // A call's answer counts only if the call ends well.
+  // The answer of a call counts only if the call succeeds.
   bool finish(bool good, const ScriptError& error, ScriptAnswer& out, ScriptAnswer& answer) {
     state.view = nullptr;
     state.answer = nullptr;
@@ -134,7 +134,7 @@ Script::~Script() { lua_close(impl_->state.lua); }
 
 bool Script::load(const std::string& text, ScriptError& error) {
   lua_State* lua = impl_->state.lua;
-  // "t": text only; a file of byte code could break the machine.
+  // "t": text only; malformed byte code could crash the interpreter.
   if (luaL_loadbufferx(lua, text.data(), text.size(), "=script", "t") != LUA_OK) {
     error = split_message(lua_tostring(lua, -1));
     lua_settop(lua, 0);

@@ -1,14 +1,16 @@
-// Lua 5.4 for what is not realtime: functions that a behavior's `call:` names, and handlers of
-// events. The only door to Lua. A script sees a snapshot of the robot and answers with events to
-// raise and parameters to set; it never touches the tick. Call it from a thread that may wait.
+// Lua 5.4 for code that is not realtime: functions named in a behavior's `call:`, and event
+// handlers. The only use of Lua. A script sees a snapshot of the robot and answers with events to
+// raise and parameters to set; it never accesses the tick. To be called from a thread that may
+// wait.
 //
-// What a script may use: Lua's base, string, table, math, utf8 and coroutine libraries without the
-// parts that load code, and the table `footfall`:
-//   footfall.on(PATTERN, function(event) ... end)   handles events, as `on:` matches them
+// Available to scripts: Lua's base, string, table, math, utf8 and coroutine libraries without
+// functions that load code, and the table `footfall`:
+//   footfall.on(PATTERN, function(event) ... end)   handles events, matched like `on:`
 //   footfall.raise(EVENT)      footfall.set(PARAMETER, NUMBER or {NUMBER, ...})
 //   footfall.get(SIGNAL)       footfall.parameter(NAME)     footfall.time()
 //   footfall.active(STATE)     footfall.log(TEXT)
-// `pairs` goes in sorted order and `math.random` from the run's seed, so that runs repeat.
+// `pairs` iterates in sorted order and `math.random` is seeded by the run, so that runs are
+// reproducible.
 #pragma once
 
 #include <cstdint>
@@ -21,20 +23,20 @@ namespace footfall::behaviors {
 
 struct Behavior;
 
-// What a run grants beyond computing.
+// Permissions of scripts beyond computing.
 struct ScriptAccess {
-  bool files = false;      // io.open and friends, os.remove, os.rename
+  bool files = false;      // io.open etc., os.remove, os.rename
   bool processes = false;  // io.popen, os.execute
 };
 
 struct ScriptSettings {
   ScriptAccess access;
-  std::uint64_t seed = 0;                    // of math.random
-  std::int64_t instructions = 10'000'000;    // of the virtual machine, in one call
-  std::size_t memory = 64U * 1024U * 1024U;  // bytes, of everything that it holds
+  std::uint64_t seed = 0;                    // seed of math.random
+  std::int64_t instructions = 10'000'000;    // limit of virtual machine instructions in one call
+  std::size_t memory = 64U * 1024U * 1024U;  // bytes, limit of all memory of the script
 };
 
-// The robot as a script sees it; valid for the duration of a call.
+// The robot as seen by a script; valid for the duration of a call.
 struct ScriptView {
   const Behavior* behavior = nullptr;
   const double* signals = nullptr;
@@ -44,18 +46,18 @@ struct ScriptView {
 };
 
 struct ScriptEdit {
-  int slot = 0;  // of the parameter array
+  int slot = 0;  // first slot in the parameter array
   double value = 0.0;
 };
 
-// What a call wants; messages are texts for the log, `script: ` before an error.
+// Result of a call; messages are texts for the log, errors begin with `script: `.
 struct ScriptAnswer {
   std::vector<int> events;
   std::vector<ScriptEdit> edits;
   std::vector<std::string> messages;
 };
 
-// Where and why a script failed; line 0: no line.
+// Position and reason of a script error; line 0: unknown.
 struct ScriptError {
   int line = 0;
   std::string text;
@@ -63,20 +65,20 @@ struct ScriptError {
 
 class Script {
  public:
-  // Throws std::bad_alloc if Lua cannot start.
+  // Throws std::bad_alloc if Lua cannot be created.
   explicit Script(const ScriptSettings& settings);
   ~Script();
   Script(const Script&) = delete;
   Script& operator=(const Script&) = delete;
 
-  // Runs a file's text, which defines functions and handlers. False and the reason otherwise.
+  // Runs a file's text, which defines functions and handlers. False and the reason on failure.
   bool load(const std::string& text, ScriptError& error);
-  // Global functions that the files defined, sorted, and the patterns of footfall.on in order.
+  // Global functions defined by the files, sorted, and the patterns of footfall.on in order.
   std::vector<std::string> functions() const;
   const std::vector<std::string>& patterns() const;
 
-  // Calls a global function; false: it failed (the reason is the last message). What it asked for
-  // before failing is dropped.
+  // Calls a global function. False if it failed: the reason is the last message, and requests made
+  // before the failure are dropped.
   bool call(const std::string& function, const ScriptView& view, ScriptAnswer& answer);
   // Calls the handlers whose pattern matches the event, in the order of footfall.on.
   bool handle(std::string_view event, const ScriptView& view, ScriptAnswer& answer);

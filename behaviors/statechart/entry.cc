@@ -1,5 +1,5 @@
-// Which states are entered: SCXML's computeEntrySet, addDescendantStatesToEnter and
-// addAncestorStatesToEnter, on one bit a state. Recursion is bounded by the depth of the chart.
+// Computes the entered states: SCXML's computeEntrySet, addDescendantStatesToEnter and
+// addAncestorStatesToEnter, with one bit a state. Recursion is bounded by the depth of the chart.
 #include "behaviors/statechart/statechart.h"
 
 namespace footfall::behaviors {
@@ -13,7 +13,7 @@ void Statechart::compute_entries(int transition) noexcept {
   }
   const int count = effective_targets(t, target_scratch_.data());
   for (int k = 0; k < count; ++k) add_ancestors(target_scratch_[idx(k)], ancestor);
-  // A root that is parallel is itself the domain: its other regions were left and come back.
+  // A parallel root is its own domain: its other regions were exited and are entered again.
   if (ancestor == 0 && state(0).kind == StateKind::parallel) add_regions(0);
 }
 
@@ -46,7 +46,7 @@ void Statechart::add_ancestors(int s, int ancestor) noexcept {
   }
 }
 
-// Regions of a parallel state in which nothing is to be entered yet.
+// Adds the regions of a parallel state in which no state is to be entered yet.
 void Statechart::add_regions(int parallel) noexcept {
   for (int child = parallel + 1; child < state(parallel).end; child = state(child).end) {
     if (state(child).history >= 0) continue;

@@ -1,4 +1,4 @@
-// Built once at load; see index.h.
+// Lookup tables of the statechart, built once at load; see index.h.
 #include "behaviors/statechart/index.h"
 
 namespace footfall::behaviors {

@@ -1,5 +1,5 @@
-// What the statechart looks up in every tick, derived from a Chart once at load: per state the
-// transitions worth asking, without those that cannot be enabled, and sets of states as bits.
+// Lookup tables of the statechart for the tick, derived from a Chart once at load: per state the
+// transitions to be tested, without those that can never be enabled, and sets of states as bits.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,8 @@
 
 namespace footfall::behaviors {
 
-// A set of states, by index: iterated in document order, forth or back. Sized at construction.
+// A set of states, by index; iterated forwards or backwards in document order. Sized at
+// construction.
 class StateSet {
  public:
   explicit StateSet(std::size_t states) : words_((states + 63) / 64) {}
@@ -21,7 +22,7 @@ class StateSet {
   void clear() noexcept {
     for (std::uint64_t& w : words_) w = 0;
   }
-  // Whether it holds one of first .. end-1.
+  // Whether it contains one of first .. end-1.
   bool any_in(int first, int end) const noexcept {
     for (std::size_t k = word(first); first < end && k <= word(end - 1); ++k) {
       if ((words_[k] & mask(k, first, end)) != 0) return true;
@@ -58,7 +59,7 @@ class StateSet {
   static std::uint64_t bit(int s) noexcept {
     return std::uint64_t{1} << (static_cast<unsigned>(s) % 64U);
   }
-  // The bits of first .. end-1 that lie in word k.
+  // The bits of first .. end-1 in word k.
   static std::uint64_t mask(std::size_t k, int first, int end) noexcept {
     std::uint64_t m = ~std::uint64_t{0};
     if (k == word(first)) m &= m << (static_cast<unsigned>(first) % 64U);
@@ -68,7 +69,7 @@ class StateSet {
   std::vector<std::uint64_t> words_;
 };
 
-// A transition as selection sees it.
+// The part of a transition that selection needs.
 struct Trigger {
   int transition = 0;
   int guard = -1;
@@ -79,13 +80,13 @@ struct ChartIndex {
   explicit ChartIndex(const Chart& chart);
 
   std::vector<Trigger> triggers;
-  std::vector<Range> eventless, on_event;  // by state, into triggers, in document order
-  // By state: it or the nearest ancestor that has event-less transitions (with `on`); -1: none.
+  std::vector<Range> eventless, on_event;  // by state: indices into triggers, in document order
+  // By state: itself or the nearest ancestor that has event-less transitions (with `on`); -1: none.
   std::vector<int> first_eventless, first_on_event;
   std::vector<int> timers;           // transitions with `after`
-  std::vector<Range> state_timers;   // by state, into timers
+  std::vector<Range> state_timers;   // by state: indices into timers
   std::vector<int> histories;        // history states
-  std::vector<Range> own_histories;  // by state, into histories: its children
+  std::vector<Range> own_histories;  // by state: indices into histories, of its children
 };
 
 }  // namespace footfall::behaviors

@@ -1,4 +1,4 @@
-// Which transitions are taken: SCXML's selectTransitions and removeConflictingTransitions.
+// Selects transitions: SCXML's selectTransitions and removeConflictingTransitions.
 #include <algorithm>
 #include <cmath>
 
@@ -6,9 +6,9 @@
 
 namespace footfall::behaviors {
 
-// Every active atomic state, in document order, takes the first enabled transition of its own or of
-// the nearest ancestor that has one. What an earlier atomic state has asked in this selection gives
-// the same answer again (conditions have no effect), so each state is asked once.
+// Every active atomic state, in document order, selects the first enabled transition of itself or
+// of its nearest ancestor with one. Conditions have no side effects, so each state is tested only
+// once in a selection, even if several atomic states share an ancestor.
 void Statechart::select(int event) noexcept {
   selected_.clear();
   candidates_.clear();
@@ -54,7 +54,7 @@ bool Statechart::enabled(const Trigger& trigger, int event) const noexcept {
   return holds;
 }
 
-// What history targets stand for now; other targets stand for themselves.
+// Replaces history targets by the states that they restore; other targets are unchanged.
 int Statechart::effective_targets(const TransitionInfo& transition, int* out) const noexcept {
   int count = 0;
   for (int k = transition.targets.first; k < transition.targets.end(); ++k) {
@@ -83,7 +83,8 @@ int Statechart::domain(int transition) const noexcept {
 }
 
 // Exit sets intersect exactly if one domain contains the other (a domain always has an active
-// child); then a descendant's transition beats its ancestor's, else the earlier one wins.
+// child); then a descendant's transition has precedence over its ancestor's, otherwise the earlier
+// one.
 void Statechart::remove_conflicting() noexcept {
   for (const int t1 : candidates_) {
     const int mine = domain(t1);

@@ -7,7 +7,7 @@
 namespace footfall::behaviors {
 namespace {
 constexpr int kQueueCapacity = 256;
-constexpr std::size_t kRecordCapacity = 256;  // marks, transitions and texts shown of one tick
+constexpr std::size_t kRecordCapacity = 256;  // of marks, transitions, texts in one tick
 }  // namespace
 
 bool EventQueue::push(int event) noexcept {
@@ -85,7 +85,7 @@ void Statechart::begin_tick(std::int64_t tick) noexcept {
 }
 
 bool Statechart::raise(int event) noexcept {
-  if (event < 0 || finished_) return true;  // nothing listens to it
+  if (event < 0 || finished_) return true;  // no transition listens to it
   if (external_.push(event)) return true;
   faults_.add(core::Fault::event_overflow);
   overflowed_ = true;
@@ -120,9 +120,9 @@ void Statechart::run() noexcept {
       queue = !internal_.empty() ? &internal_ : &external_;
       if (queue->empty()) return;
       select(queue->front());
-      if (selected_.empty()) take_event(*queue);  // an event that enables nothing is gone
+      if (selected_.empty()) take_event(*queue);  // an event that enables no transition is dropped
     }
-    if (steps_++ >= chart_.micro_steps) {  // the rest waits for the next tick
+    if (steps_++ >= chart_.micro_steps) {  // the rest is postponed to the next tick
       execution_error();
       return;
     }
@@ -131,7 +131,7 @@ void Statechart::run() noexcept {
   }
 }
 
-// Takes the next event from a queue; scripts that handle it are asked to.
+// Takes the next event from a queue; requests the calls of scripts that handle it.
 void Statechart::take_event(EventQueue& queue) noexcept {
   const int event = queue.pop();
   if (events_.size() < kRecordCapacity) events_.push_back(event);
@@ -143,7 +143,7 @@ void Statechart::take_event(EventQueue& queue) noexcept {
   }
 }
 
-// SCXML's microstep: exit all, then the transitions' actions, then enter all.
+// SCXML's microstep: exits all states, then runs the transitions' actions, then enters all states.
 void Statechart::micro_step() noexcept {
   const int before = control_;
   for (const int t : selected_) {
@@ -151,7 +151,7 @@ void Statechart::micro_step() noexcept {
     if (info.after >= 0 && !info.has_event) timer_taken_[idx(t)] = 1;
     if (info.targets.count > 0) mark_exits(domain(t));
   }
-  // Histories before the exits are carried out, and before the entries read them: as in Appendix D.
+  // Records histories before the exits, and thus before the entries read them, as in Appendix D.
   leaving_.for_each([this](int s) {
     const Range own = index_.own_histories[idx(s)];
     for (int k = own.first; k < own.end(); ++k) record_history(index_.histories[idx(k)]);
@@ -267,7 +267,7 @@ void Statechart::run_actions(Range actions) noexcept {
   for (int k = actions.first; k < actions.end(); ++k) {
     if (run_action(chart_.actions[idx(k)])) continue;
     execution_error();
-    return;  // skips the rest of the list
+    return;  // skip the rest of the list
   }
 }
 

@@ -1,6 +1,7 @@
-// The statechart at run time: pure W3C SCXML 1.0 semantics (section 3.13 and Appendix D) on the
-// flat arrays of a Chart. It knows ticks, signals and parameters, but nothing of robots or control.
-// Everything is allocated by the constructor; all else is noexcept and allocation-free.
+// The statechart at run time: W3C SCXML 1.0 semantics (section 3.13 and Appendix D) on the flat
+// arrays of a Chart. It uses ticks, signals and parameters, but is independent of robots and
+// control. Everything is allocated by the constructor; all other functions are noexcept and
+// allocation-free.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ struct LogRecord {
   std::array<double, kMaxLogValues> values{};
 };
 
-// First in, first out, with a fixed capacity.
+// FIFO queue of fixed capacity.
 class EventQueue {
  public:
   explicit EventQueue(int capacity) : items_(static_cast<std::size_t>(capacity)) {}
@@ -30,7 +31,7 @@ class EventQueue {
   std::size_t room() const noexcept { return items_.size() - static_cast<std::size_t>(count_); }
   bool push(int event) noexcept;
   void clear() noexcept { count_ = 0; }
-  // What waits in another queue, as `events` names it here (-1: drops it).
+  // Takes the waiting events of another queue; `events` maps their ids (-1: dropped).
   void take_over(const EventQueue& old, const std::vector<int>& events) noexcept;
   int front() const noexcept { return items_[static_cast<std::size_t>(first_)]; }
   int pop() noexcept;
@@ -47,55 +48,56 @@ class EventQueue {
 
 class Statechart {
  public:
-  // `signals` and `parameters` are read at every tick; actions write parameters. All must outlive
+  // `signals` and `parameters` are read in every tick; actions write parameters. All must outlive
   // it.
   Statechart(const Chart& chart, const double* signals, std::span<double> parameters);
 
   // Enters the initial configuration; event-less transitions wait for the first tick.
   void start(std::int64_t tick) noexcept;
-  // Forgets what the last tick recorded; call before this tick's raise().
+  // Clears the records of the last tick; call before this tick's raise().
   void begin_tick(std::int64_t tick) noexcept;
-  // Appends to the external queue; false: full (counted, and fault.event.overflow is raised).
+  // Appends to the external queue; false if full (counted, and fault.event.overflow is raised).
   bool raise(int event) noexcept;
   // The safe state is entered ahead of this tick's transitions (docs/behaviors.md 8.10).
   void request_safe() noexcept { safe_requested_ = true; }
-  // One tick: event-less transitions, internal events, external events until all queues are empty.
+  // One tick: event-less transitions, internal events, external events, until all queues are empty.
   void run() noexcept;
 
-  // Whether the configuration of a chart whose place this one takes is one of this chart.
+  // Whether the configuration of the chart to be replaced exists in this chart.
   bool has_configuration_of(const Statechart& old, const TakeOverMap& map) const noexcept;
-  // Goes on from the old chart's configuration, clocks, histories and events (no actions are run);
-  // if that is none of this chart's, from its own last one, with new clocks. Between two ticks.
+  // Bumpless transfer from the old chart, between two ticks: continues with its configuration,
+  // clocks, histories and events, without running actions. If that configuration does not exist in
+  // this chart, its own last one is restored with new clocks.
   void take_over(const Statechart& old, const TakeOverMap& map) noexcept;
 
   std::span<const int> active_states() const noexcept { return active_list_; }
   std::span<const int> active_atomic() const noexcept { return atomic_list_; }
   bool is_active(int state) const noexcept { return active_[idx(state)] != 0; }
   std::int64_t entry_tick(int state) const noexcept { return entry_ticks_[idx(state)]; }
-  // Grows with each entry of the state; tells a re-entry from staying.
+  // Incremented at each entry of the state, to distinguish a re-entry from staying.
   std::uint32_t entry_serial(int state) const noexcept { return entry_serials_[idx(state)]; }
-  // Sum of control weights of the configuration from which `state` was entered last.
+  // Sum of control weights of the configuration that was active before `state` was last entered.
   int control_before(int state) const noexcept { return control_before_[idx(state)]; }
   int control() const noexcept { return control_; }
   bool finished() const noexcept { return finished_; }
   std::span<const int> marks() const noexcept { return marks_; }
   std::span<const int> transitions_taken() const noexcept { return taken_; }
-  // Events that came to their turn in this tick, in order; those that enabled nothing, too.
+  // Events processed in this tick, in order, including those that enabled no transition.
   std::span<const int> events_taken() const noexcept { return events_; }
-  // The tick at which a transition's `after` holds, -1 if it has none in force.
+  // The tick at which a transition's `after` expires, -1 if it is not running.
   std::int64_t deadline(int transition) const noexcept {
     return timer_taken_[idx(transition)] != 0 ? -1 : deadlines_[idx(transition)];
   }
-  // What a transition's guard has given so far: bit 0 false, bit 1 true.
+  // Values of a transition's guard so far: bit 0 false, bit 1 true.
   std::uint8_t guard_outcomes(int transition) const noexcept {
     return guard_outcomes_[idx(transition)];
   }
   std::span<const LogRecord> logs() const noexcept { return logs_; }
-  // What this tick asks of the scripts, in order.
+  // Requests to scripts in this tick, in order.
   std::span<const ScriptRequest> script_requests() const noexcept { return script_requests_; }
   const core::FaultCounters& faults() const noexcept { return faults_; }
   void count_fault(core::Fault fault) noexcept { faults_.add(fault); }
-  // error.execution, as an internal event of the next tick.
+  // Raises error.execution as an internal event of the next tick.
   void report_execution_error() noexcept { execution_error(); }
   const EvaluationContext& context() const noexcept { return context_; }
 
@@ -128,7 +130,7 @@ class Statechart {
   void raise_internal(int event) noexcept;
   void execution_error() noexcept;
 
-  // In another chart's place (take_over.cc).
+  // Bumpless transfer (take_over.cc).
   void take_configuration(const Statechart& old, const TakeOverMap& map) noexcept;
   void enter_again(std::int64_t tick) noexcept;
   void find_deadlines(int s, std::int64_t unknown) noexcept;
@@ -147,18 +149,18 @@ class Statechart {
   EvaluationContext context_;
   std::vector<std::uint8_t> active_;  // by state
   StateSet configuration_, entering_, leaving_;
-  std::vector<std::uint64_t> asked_;  // by state: the selection that asked it last
+  std::vector<std::uint64_t> asked_;  // by state: number of the selection that tested it last
   std::uint64_t selection_ = 0;
   std::vector<std::int64_t> entry_ticks_;
   std::vector<std::uint32_t> entry_serials_;
   std::vector<int> control_before_;
-  std::vector<std::int64_t> deadlines_;    // by transition with `after`; tick at which it holds
-  std::vector<std::uint8_t> timer_taken_;  // by transition: event-less timer used up
+  std::vector<std::int64_t> deadlines_;    // by transition with `after`; tick at which it expires
+  std::vector<std::uint8_t> timer_taken_;  // by transition: event-less timer already taken
   std::vector<int> active_list_, atomic_list_;
-  std::vector<int> candidates_;      // enabled transitions, conflicts and all
+  std::vector<int> candidates_;      // enabled transitions, including conflicting ones
   std::vector<int> selected_;        // transitions of this micro step
   std::vector<int> history_values_;  // by slot, states.size() each
-  std::vector<int> history_counts_;  // by slot, 0: never left
+  std::vector<int> history_counts_;  // by slot, 0: never exited
   mutable std::vector<int> target_scratch_;
   EventQueue internal_, external_;
   std::vector<int> marks_, taken_, events_;
@@ -167,11 +169,11 @@ class Statechart {
   std::vector<ScriptRequest> script_requests_;
   core::FaultCounters faults_;
   int control_ = 0;
-  int steps_ = 0;  // micro steps of this tick
+  int steps_ = 0;  // micro steps in this tick
   bool finished_ = false;
   bool safe_requested_ = false;
   bool overflowed_ = false;
-  bool recorded_start_ = false;  // start()'s marks are still to be shown
+  bool recorded_start_ = false;  // marks of start() must still be reported
 };
 
 }  // namespace footfall::behaviors

@@ -1,4 +1,4 @@
-// The statechart goes on where that of another behavior was; see
+// Bumpless transfer of the statechart from another behavior; see
 // behaviors/compiled/take_over_map.h.
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 
 namespace footfall::behaviors {
 namespace {
-constexpr std::int64_t kUnknown = -2;  // a deadline that is still to be found
+constexpr std::int64_t kUnknown = -2;  // a deadline still to be computed
 
 }  // namespace
 
@@ -46,8 +46,8 @@ void Statechart::take_over(const Statechart& old, const TakeOverMap& map) noexce
   for (const int s : active_list_) control_before_[idx(s)] = control_;
 }
 
-// Clocks go on. A deadline stays if it was computed from the same words; else it is that of the new
-// words, counted from the entry.
+// Clocks continue. A deadline is kept if its `after` is unchanged; otherwise it is computed from
+// the new `after`, counted from the entry.
 void Statechart::take_configuration(const Statechart& old, const TakeOverMap& map) noexcept {
   std::ranges::fill(active_, std::uint8_t{0});
   std::ranges::fill(deadlines_, kUnknown);
@@ -73,7 +73,7 @@ void Statechart::take_configuration(const Statechart& old, const TakeOverMap& ma
   std::ranges::replace(deadlines_, kUnknown, std::int64_t{-1});
 }
 
-// What was active here before is active again, with new clocks; its actions are not run.
+// Restores this chart's last configuration, with new clocks and without running actions.
 void Statechart::enter_again(std::int64_t tick) noexcept {
   for (const int s : active_list_) {
     entry_ticks_[idx(s)] = tick;
@@ -87,7 +87,7 @@ void Statechart::enter_again(std::int64_t tick) noexcept {
   }
 }
 
-// Those of a state that are `unknown`, from its entry on.
+// Computes the `unknown` deadlines of a state, counted from its entry.
 void Statechart::find_deadlines(int s, std::int64_t unknown) noexcept {
   const Range timers = index_.state_timers[idx(s)];
   for (int k = timers.first; k < timers.end(); ++k) {
@@ -100,7 +100,7 @@ void Statechart::find_deadlines(int s, std::int64_t unknown) noexcept {
   }
 }
 
-// A memory of states that are no more is lost as a whole.
+// A history that contains removed states is dropped as a whole.
 void Statechart::take_histories(const Statechart& old, const TakeOverMap& map) noexcept {
   for (std::size_t h = 0; h < map.histories.size(); ++h) {
     if (map.histories[h] < 0) continue;

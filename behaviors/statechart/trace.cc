@@ -1,4 +1,4 @@
-// `footfall trace`; see trace.h.
+// Implementation of `footfall trace`; see trace.h.
 #include "behaviors/statechart/trace.h"
 
 #include <fmt/format.h>
@@ -82,7 +82,7 @@ int index_of(const std::vector<std::string>& names, const std::string& name) {
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-// A script may raise what the behavior names nowhere: prefixes and `*` hear that too.
+// A script may raise events that the behavior does not name; prefixes and `*` match these, too.
 Chart with_events_of(const Behavior& behavior, const std::vector<TraceStep>& steps) {
   Chart chart = behavior;
   for (const TraceStep& step : steps) {
@@ -124,7 +124,7 @@ std::vector<TraceStep> trace_events(std::string_view names) {
 std::vector<std::string> unknown_events(const Behavior& behavior,
                                         const std::vector<TraceStep>& steps) {
   std::vector<std::string> sentences;
-  if (!behavior.scripts.empty()) return sentences;  // theirs may be any
+  if (!behavior.scripts.empty()) return sentences;  // scripts may raise any event
   std::vector<std::string> seen = behavior.events;
   for (const TraceStep& step : steps) {
     if (step.after >= 0.0 || index_of(seen, step.event) >= 0) continue;
@@ -148,7 +148,7 @@ void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::o
   std::vector<double> values = behavior.values;
   Statechart statechart(chart, signals.values(), values);
   std::int64_t tick = 0;
-  double seconds = 0.0;  // delays add up before they are rounded up to whole periods
+  double seconds = 0.0;  // delays add up before rounding up to whole periods
   const auto run = [&](int event) {
     statechart.begin_tick(tick);
     if (behavior.layout.time >= 0) {

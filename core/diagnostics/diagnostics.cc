@@ -1,4 +1,4 @@
-// Load-time problems, collected and printed like a compiler's; see diagnostics.h.
+// Collects load-time problems and prints them like a compiler; see diagnostics.h.
 #include "core/diagnostics/diagnostics.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace footfall::core {
 
 namespace {
 
-// Edit distance that counts a swap of neighbours as one edit (optimal string alignment).
+// Edit distance; swapping two neighbouring letters counts as one edit (optimal string alignment).
 int edit_distance(std::string_view a, std::string_view b) {
   const std::size_t columns = b.size() + 1;
   std::vector<int> before_last(columns), last(columns), row(columns);
@@ -36,7 +36,7 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-// Whether two words differ in nothing but capitals.
+// Whether two words are equal except for upper and lower case.
 bool same_letters(std::string_view a, std::string_view b) {
   const auto small = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -76,7 +76,7 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   std::vector<Diagnostic> out = items_;
   std::stable_sort(out.begin(), out.end(),
                    [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  // An anchor read through several aliases reports the same problem several times.
+  // The same problem is reported several times if several aliases refer to its anchor.
   const auto again = std::unique(out.begin(), out.end(), [&](const auto& a, const auto& b) {
     return key(a) == key(b) && a.severity == b.severity && a.text == b.text;
   });
@@ -99,13 +99,13 @@ std::string Diagnostics::to_string() const {
 }
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongestWord = 100;  // longer is not a typing mistake
+  constexpr std::size_t kLongestWord = 100;  // longer words are not typing mistakes
   if (word.size() > kLongestWord) return {};
   for (const std::string& candidate : candidates) {
     if (same_letters(word, candidate)) return candidate;
   }
   const int length = static_cast<int>(word.size());
-  // A word of one letter is near to every other one: no guess is better than that.
+  // Every one-letter word is within one edit of every other, so a guess would be worthless.
   int best = std::min(std::max(1, length / 3), length - 1);
   std::string nearest;
   for (const std::string& candidate : candidates) {

@@ -1,4 +1,5 @@
-// Load-time problems, collected and printed like a compiler's: file:line:col: error: text.
+// Load-time problems, collected and printed in the format of a compiler: file:line:col: error:
+// text.
 #pragma once
 
 #include <set>
@@ -10,16 +11,16 @@
 
 namespace footfall::core {
 
-// A place in a text file; line and column count from 1, 0 is "the whole file".
+// A position in a text file; line and column count from 1, line 0 is the whole file.
 struct Mark {
-  int file = -1;  // index into Diagnostics' list of files
+  int file = -1;  // index into the file list of Diagnostics
   int line = 0;
   int column = 0;
 };
 
 enum class Severity { error, warning };
 
-// One problem. `id` is a stable short name (e.g. "unknown-key") that tests and docs refer to.
+// One problem. `id` is a stable short name (e.g. "unknown-key") used by tests and documents.
 struct Diagnostic {
   Severity severity = Severity::error;
   Mark mark;
@@ -27,25 +28,25 @@ struct Diagnostic {
   std::string text;
 };
 
-// Collects all problems of a load, so that one pass reports everything.
+// Collects all problems of a load, so that one pass reports them all.
 class Diagnostics {
  public:
-  // Registers a file and returns its index; the same path gives the same index.
+  // Registers a file and returns its index; equal paths get the same index.
   int add_file(const std::string& path);
-  // The same words about the same place are taken once: what is written once may be read often
-  // (templates, stacks, aliases).
+  // Adds an error. Repeats of the same text at the same position are dropped, because templates,
+  // stacks and aliases may read one source line several times.
   void error(Mark mark, std::string_view id, std::string text);
   void warning(Mark mark, std::string_view id, std::string text);
-  // What is said about this place from now on is a consequence of what was said already: dropped.
+  // Suppresses further diagnostics at this position: they would only follow from an earlier one.
   void silence(Mark mark) { silent_.insert({mark.file, mark.line, mark.column}); }
   bool has_errors() const { return error_count_ > 0; }
   int error_count() const { return error_count_; }
   const std::vector<Diagnostic>& all() const { return items_; }
   int file_count() const { return static_cast<int>(files_.size()); }
   const std::string& file(int index) const { return files_[static_cast<std::size_t>(index)]; }
-  // In order of file and place; a problem that is reported again at its place is left out.
+  // Sorted by file and position, without repeated problems.
   std::vector<Diagnostic> sorted() const;
-  // `file:line:col: error: text`, one a line, in order of file and place.
+  // `file:line:col: error: text`, one problem a line, sorted by file and position.
   std::string to_string() const;
 
  private:
@@ -53,16 +54,16 @@ class Diagnostics {
 
   std::vector<std::string> files_;
   std::vector<Diagnostic> items_;
-  std::unordered_set<std::string> said_;  // place, id and text of every item
+  std::unordered_set<std::string> said_;  // position, id and text of every item
   std::set<std::tuple<int, int, int>> silent_;
   int error_count_ = 0;
 };
 
-// The candidate nearest to `word` (edit distance at most 1/3 of its length, at least 1), or empty.
+// The candidate nearest to `word` (edit distance at most max(1, length / 3)), or empty.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
 // " (did you mean 'x'?)" or "".
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
-// The same; where no candidate is near, all of them if they are few: " (there are a, b)".
+// did_you_mean(); if no candidate is near and there are few, all of them: " (there are a, b)".
 std::string did_you_mean_or_list(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace footfall::core

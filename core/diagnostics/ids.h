@@ -1,4 +1,4 @@
-// Every id that a diagnostic may carry: what editors, tests and the reference go by.
+// Every id that a diagnostic may carry; used by editors, tests and the reference.
 #pragma once
 
 #include <span>
@@ -9,14 +9,14 @@
 namespace footfall::core {
 
 struct DiagnosticInfo {
-  std::string_view id;  // small letters and '-'; never renamed, people filter by it
+  std::string_view id;  // lower case and '-'; never renamed, because users filter by it
   Severity severity = Severity::error;
   std::string_view meaning;  // one line
 };
 
-// All of them, in alphabetical order. Each has a wrong file in tests/language/mistakes.
+// All ids in alphabetical order. Each has an example file in tests/language/mistakes.
 std::span<const DiagnosticInfo> diagnostic_ids();
-// nullptr if there is no such id.
+// nullptr if unknown.
 const DiagnosticInfo* find_diagnostic_id(std::string_view id);
 
 }  // namespace footfall::core

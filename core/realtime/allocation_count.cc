@@ -1,5 +1,5 @@
 // malloc interposition; see allocation_count.h. The counters are plain thread-local integers, so
-// that the interposed functions allocate nothing themselves.
+// that the interposed functions allocate nothing.
 #include "core/realtime/allocation_count.h"
 
 #include <cerrno>

@@ -1,6 +1,6 @@
-// A bounded queue from one thread to one other, wait-free on both sides, its entries made at load:
-// edits and events into the tick, answers out of it. Nothing is dropped: a producer is told when it
-// is full.
+// Bounded single-producer, single-consumer queue, wait-free on both sides, with entries allocated
+// at load: edits and events into the tick, answers out of it. Nothing is dropped: the producer
+// learns when the queue is full.
 #pragma once
 
 #include <atomic>
@@ -13,12 +13,12 @@ namespace footfall::core {
 template <typename T>
 class Ring {
  public:
-  // All entries are copies of `prototype`, so that what they own is allocated here.
+  // All entries are copies of `prototype`, so that memory that they own is allocated here.
   explicit Ring(std::size_t capacity, const T& prototype = T()) : entries_(capacity, prototype) {}
 
   std::size_t capacity() const noexcept { return entries_.size(); }
 
-  // Producer: the entry to fill, nullptr if the queue is full; publish() hands it over.
+  // Producer: the entry to fill, nullptr if the queue is full; publish() passes it to the consumer.
   T* next() noexcept {
     const std::uint64_t written = written_.load(std::memory_order_relaxed);
     if (written - read_.load(std::memory_order_acquire) == entries_.size()) return nullptr;
@@ -26,7 +26,8 @@ class Ring {
   }
   void publish() noexcept { written_.fetch_add(1, std::memory_order_release); }
 
-  // Consumer: how many wait, the i-th of them (0: the oldest), and giving back the oldest `count`.
+  // Consumer: number of waiting entries, the i-th of them (0: the oldest), release of the oldest
+  // `count`.
   std::size_t waiting() const noexcept {
     return static_cast<std::size_t>(written_.load(std::memory_order_acquire) -
                                     read_.load(std::memory_order_relaxed));

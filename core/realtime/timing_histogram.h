@@ -1,4 +1,4 @@
-// Durations in a fixed logarithmic histogram: no allocation, percentiles to 1.1 %.
+// Histogram of durations with fixed logarithmic bins: no allocation, percentiles accurate to 1.1 %.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class TimingHistogram {
   }
   std::int64_t count() const noexcept { return count_; }
   std::int64_t max_ns() const noexcept { return max_; }
-  // The duration that a part `p` (0..1) of the samples does not exceed, ns; 0 without samples.
+  // Percentile in ns: a fraction `p` (0..1) of the samples is not above it; 0 without samples.
   double percentile(double p) const noexcept {
     const double wanted = p * static_cast<double>(count_);
     double seen = 0.0;

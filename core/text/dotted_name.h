@@ -1,4 +1,4 @@
-// Names with dots between their parts: `gains.single.swing.kp`.
+// Names with parts separated by dots: `gains.single.swing.kp`.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Text of people in languages with signs of their own.
+// Escapes text for markup languages.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace footfall::core {
 
-// For HTML and XML, between tags and in attributes in double quotes: `& < > "` as entities, control
-// characters as blanks.
+// For HTML and XML text and double-quoted attributes: `& < > "` become entities, control characters
+// become blanks.
 std::string escape_html(std::string_view text);
 
 }  // namespace footfall::core

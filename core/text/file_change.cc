@@ -1,4 +1,4 @@
-// Files that change together; see file_change.h.
+// Changes several files together; see file_change.h.
 #include "core/text/file_change.h"
 
 #include <fcntl.h>
@@ -22,7 +22,7 @@ namespace {
 
 std::string reason(const char* what) { return fmt::format("{}: {}", what, std::strerror(errno)); }
 
-// An open file, closed at the end.
+// A file descriptor, closed by the destructor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -38,7 +38,7 @@ class Descriptor {
   int number_;
 };
 
-// What a link points to, perhaps not there yet.
+// Target of a symbolic link; it need not exist yet.
 std::string real_path(const std::string& path) {
   std::error_code error;
   const std::filesystem::path real =
@@ -58,16 +58,17 @@ std::optional<std::string> read_all(int file) {
   }
 }
 
-// A change on its way: the new content lies beside the file, complete.
+// A staged change: the complete new content in a temporary file beside the target.
 struct Staged {
   const FileChange* change = nullptr;
   std::string target, part;
   bool renamed = false;
 };
 
-// Why a file is not what the change was made for; empty: it is. The file is open afterwards and
-// locked, so that of two who save at once one meets the other's text. The lock is taken on what the
-// name meant before waiting: the text is read by name again.
+// Why the file no longer holds the content that the change was made for; empty if it does. The file
+// is open and locked afterwards, so that of two programs that save at the same time the second one
+// sees the text of the first. The file may be replaced while waiting for the lock, therefore the
+// text is read again by name.
 std::string check_target(const FileChange& change, const std::string& target,
                          std::vector<std::unique_ptr<Descriptor>>& locks) {
   if (change.is_new) {
@@ -85,7 +86,7 @@ std::string check_target(const FileChange& change, const std::string& target,
   return "";
 }
 
-// Writes the new content beside the file, with its mode and owner.
+// Writes the new content beside the target, with the target's mode and owner.
 std::string stage(Staged& staged) {
   const std::string name = fmt::format("{}.{}.part", staged.target, ::getpid());
   const Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -95,14 +96,14 @@ std::string stage(Staged& staged) {
   struct stat old {};
   if (!staged.change->is_new && ::stat(staged.target.c_str(), &old) == 0) {
     const int owned = ::fchown(file.get(), old.st_uid, old.st_gid);
-    static_cast<void>(owned);  // not allowed to most: the file then is the writer's
+    static_cast<void>(owned);  // needs privileges; else the writer owns the file
     if (::fchmod(file.get(), old.st_mode & 07777) != 0) return reason("cannot keep its mode");
   }
   return ::fsync(file.get()) == 0 ? "" : reason("cannot write");
 }
 
 std::string put_in_place(Staged& staged) {
-  // A new file must not take the place of one that came meanwhile.
+  // A new file must not replace one that was created in the meantime.
   const bool done = staged.change->is_new
                         ? ::link(staged.part.c_str(), staged.target.c_str()) == 0
                         : std::rename(staged.part.c_str(), staged.target.c_str()) == 0;
@@ -111,11 +112,11 @@ std::string put_in_place(Staged& staged) {
   staged.renamed = true;
   const std::string folder = std::filesystem::path(staged.target).parent_path().string();
   const Descriptor open_folder(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (open_folder.good()) ::fsync(open_folder.get());  // else the name is on disk a little later
+  if (open_folder.good()) ::fsync(open_folder.get());  // else the name reaches the disk later
   return "";
 }
 
-// After a rename failed: the files that were renamed get their old content back.
+// Restores the old content of the files already renamed, after a later rename failed.
 void take_back(std::vector<Staged>& all) {
   for (Staged& staged : all) {
     if (!staged.renamed) continue;

@@ -1,4 +1,4 @@
-// Files that change together: shown as a diff first, then written, all of them or none.
+// Changes several files together: shown as a diff first, then either all are written or none.
 #pragma once
 
 #include <string>
@@ -11,17 +11,18 @@ namespace footfall::core {
 struct FileChange {
   std::string path;
   std::string before, after;
-  bool is_new = false;  // there must be no such file yet
+  bool is_new = false;  // the file must not exist yet
 };
 
-// What changes in the lines of a text, as `diff -u` shows it, with three lines of context; empty if
-// they are equal. `path` stands in both heads; the old one of a new file is /dev/null.
+// Line differences as printed by `diff -u`, with three lines of context; empty if the texts are
+// equal. `path` is in both header lines; for a new file the old one is /dev/null.
 std::string unified_diff(const std::string& path, std::string_view before, std::string_view after,
                          bool is_new = false);
 
-// Writes all files or none: each beside its place and flushed, then all are renamed. A symbolic
-// link stays one, a file keeps its mode and, where that is allowed, its owner. Refused if a file
-// does not hold `before` any more. Returns the reasons against it (`path: what`); none: it is done.
+// Writes all files or none: each to a flushed temporary file beside its target, then all are
+// renamed. Keeps symbolic links, modes and, where permitted, owners. Refuses if a file no longer
+// holds `before`. Returns the reasons for refusal (`path: reason`); empty if everything was
+// written.
 std::vector<std::string> write_changes(const std::vector<FileChange>& changes);
 
 }  // namespace footfall::core

@@ -1,4 +1,4 @@
-// Text as people may see it; see printable.h.
+// Checks and sanitizes text; see printable.h.
 #include "core/text/printable.h"
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@ namespace footfall::core {
 
 namespace {
 
-// Bytes of the UTF-8 sequence at the beginning of `text`, 0 if it is none.
+// Length in bytes of the UTF-8 sequence at the beginning of `text`, 0 if invalid.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -63,7 +63,7 @@ std::string printable(std::string_view text, std::size_t most) {
   while (!text.empty()) {
     const std::size_t length = sequence_length(text);
     const auto lead = static_cast<unsigned char>(text[0]);
-    // U+0080 to U+009F are control characters, too: C2 80 to C2 9F.
+    // U+0080 to U+009F (bytes C2 80 to C2 9F) are control characters, too.
     const bool control =
         lead < 0x20 || lead == 0x7f ||
         (lead == 0xc2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xa0);

@@ -1,4 +1,4 @@
-// Whether text may be shown as it is, and how any other is shown. Not in a tick.
+// Detects and replaces text that must not be printed unchanged. Not for use in a tick.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@ struct BadText {
   std::string what;
 };
 
-// The first place that is not UTF-8 (also overlong forms and surrogates) or is a control character
+// The first place that is invalid UTF-8 (also overlong forms and surrogates) or a control character
 // other than tab, line feed and carriage return; empty if there is none.
 std::optional<BadText> find_bad_text(std::string_view text);
 
-// Whether it is UTF-8 (no overlong forms, no surrogates) without control characters other than tab,
-// line feed and carriage return.
+// Whether the text is valid UTF-8 (no overlong forms, no surrogates) without control characters
+// other than tab, line feed and carriage return.
 bool is_plain_text(std::string_view text);
 
-// The text with control characters as `\xHH`: what comes from a file must not break up a line.
+// The text with control characters as `\xHH`, so that text from a file cannot break a line.
 std::string on_one_line(std::string_view text);
 
-// Sanitizes untrusted text for terminals and logs: control characters and bytes that are not UTF-8
-// become `?`; cut between characters at `most` bytes.
+// Sanitizes untrusted text for terminals and logs: control characters and invalid bytes become `?`;
+// truncated to `most` bytes at a character boundary.
 std::string printable(std::string_view text, std::size_t most);
 
 }  // namespace footfall::core

@@ -1,5 +1,5 @@
-// Differences of texts line by line; see file_change.h. The edit graph and its shortest path are
-// those of Myers, "An O(ND) difference algorithm and its variations", Algorithmica 1 (1986).
+// Line differences of texts; see file_change.h. Edit graph and shortest path after Myers, "An O(ND)
+// difference algorithm and its variations", Algorithmica 1 (1986).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace footfall::core {
 namespace {
 
-using Lines = std::vector<std::string_view>;  // each with its line end, if it has one
+using Lines = std::vector<std::string_view>;  // each includes its line end, if any
 
 struct Step {
-  char kind = ' ';  // ' ' in both, '-' before only, '+' after only
+  char kind = ' ';  // ' ' in both, '-' only before, '+' only after
   std::string_view line;
 };
 
@@ -27,12 +27,12 @@ Lines lines_of(std::string_view text) {
   return lines;
 }
 
-// Beyond so many lines that differ, all between the first and the last is one replacement: the
-// search's memory grows with the square.
+// With more differing lines than this, everything between the first and the last difference is one
+// replacement: memory grows with the square of this number.
 constexpr int kMostSteps = 2000;
 
-// The furthest x on each diagonal after d steps, for d = 0, 1, ... until the end is reached; empty:
-// too far.
+// The furthest x on each diagonal after d steps, for d = 0, 1, ... until the end is reached; empty
+// if kMostSteps is exceeded.
 std::vector<std::vector<int>> search(const Lines& a, const Lines& b) {
   const int n = static_cast<int>(a.size()), m = static_cast<int>(b.size());
   std::vector<std::vector<int>> rounds;
@@ -92,7 +92,7 @@ void back_track(const Lines& a, const Lines& b, const std::vector<std::vector<in
   std::reverse(steps.begin(), steps.end());
 }
 
-// In a run of changes, what goes stands before what comes.
+// In a group of changes, removed lines precede added ones.
 void group_changes(std::vector<Step>& steps) {
   for (auto begin = steps.begin(); begin != steps.end();) {
     const auto changed = [](const Step& step) { return step.kind != ' '; };
@@ -116,7 +116,7 @@ std::vector<Step> steps_between(const Lines& a, const Lines& b) {
   return steps;
 }
 
-// `3,7`; a range of one line is its number, an empty one stands behind the line before it.
+// `3,7`; a range of one line is only its number, an empty range refers to the line before it.
 std::string range_text(std::size_t first, std::size_t count) {
   if (count == 1) return std::to_string(first + 1);
   return fmt::format("{},{}", count == 0 ? first : first + 1, count);
@@ -136,7 +136,7 @@ std::string unified_diff(const std::string& path, std::string_view before, std::
       ++old_line, ++new_line, ++at;
       continue;
     }
-    // Up to the first change that has more than twice the context before the next one.
+    // Up to the first change followed by more than twice the context without a change.
     const std::size_t lead = std::min({kContext, at, old_line});
     std::size_t last = at;
     for (std::size_t k = at; k < steps.size() && k <= last + 2 * kContext + 1; ++k) {

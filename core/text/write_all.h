@@ -1,4 +1,4 @@
-// All of a text into a file descriptor.
+// Writes a complete text to a file descriptor.
 #pragma once
 
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 namespace footfall::core {
 
-// Goes on where a signal or a full pipe interrupted it; false with errno if it could not.
+// Continues after a signal or a partial write; returns false with errno set on failure.
 inline bool write_all(int file, std::string_view text) {
   while (!text.empty()) {
     const ssize_t count = ::write(file, text.data(), text.size());

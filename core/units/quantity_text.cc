@@ -1,4 +1,4 @@
-// Quantities as text; see quantity_text.h.
+// Converts numbers to quantity text; see quantity_text.h.
 #include "core/units/quantity_text.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-// What follows the number in a quantity: blanks and unit.
+// The part of a quantity behind its number: blanks and unit.
 std::string_view tail_of(std::string_view quantity) {
   while (!quantity.empty() && (is_blank(quantity.front()) || quantity.front() == '+')) {
     quantity.remove_prefix(1);
@@ -35,12 +35,12 @@ std::string_view unit_of(std::string_view tail) {
   return tail;
 }
 
-// The shortest number before `tail` that reads as `value`; nothing if none does.
+// The shortest number that, followed by `tail`, reads as `value`; nullopt if there is none.
 std::optional<std::string> in_unit(double value, std::string_view tail, Dimension dimension) {
   const auto unit = parse_unit(unit_of(tail));
   if (!unit) return std::nullopt;
-  // Every double that can be written is tried near the quotient, whose two roundings and those of
-  // reading are off by less than a unit in the last place each.
+  // Number of doubles to try on either side of the quotient. Its two roundings and those of reading
+  // are off by less than one unit in the last place each.
   constexpr int kNeighbours = 8;
   double number = value / unit->value;
   if (!std::isfinite(number)) return std::nullopt;

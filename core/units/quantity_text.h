@@ -1,4 +1,4 @@
-// A number as the quantity in a file that reads back to it, bit for bit.
+// Formats a number as a quantity that reads back to the same bits.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace footfall::core {
 
-// `value` (SI, finite) in the way of `like`, a quantity as somebody wrote it: the shortest number
-// in its unit, with its blanks, that parse_quantity() reads as the same double. Where no number in
-// that unit does (a double times its factor misses some values): in SI units, and bare if `like`
-// is. A `like` that is no quantity counts as bare.
+// Formats `value` (SI, finite) in the style of the quantity `like`: the shortest number in the same
+// unit and with the same blanks that parse_quantity() reads as the same double. If no number in
+// that unit does (some doubles are not reached by a product with the unit's factor), SI units are
+// used, or a bare number if `like` is bare. A `like` that is not a quantity counts as bare.
 std::string quantity_text(double value, std::string_view like);
 
 }  // namespace footfall::core

@@ -1,4 +1,4 @@
-// Every unit that a file may write, for documents and editors.
+// Every unit allowed in files, for documents and editors.
 #pragma once
 
 #include <string_view>
@@ -15,7 +15,7 @@ struct UnitInfo {
   Dimension dimension;
 };
 
-// All of them, by dimension.
+// All units, sorted by dimension.
 std::vector<UnitInfo> all_units();
 
 }  // namespace footfall::core

@@ -139,7 +139,7 @@ class UnitParser {
     if (negative) ++at_;
     if (at_ >= text_.size() || !is_digit(text_[at_])) return false;
     exponent = text_[at_++] - '0';
-    if (at_ < text_.size() && is_digit(text_[at_])) return false;  // m^12 is no physics
+    if (at_ < text_.size() && is_digit(text_[at_])) return false;  // no two-digit powers
     if (negative) exponent = -exponent;
     return true;
   }
@@ -218,7 +218,7 @@ std::optional<Quantity> parse_quantity(std::string_view text) {
 
   const std::string_view unit_text = text.substr(length);
   if (!trimmed(unit_text).empty()) {
-    // "21/s" is a quotient of numbers to a reader; "2 1/s" is not.
+    // "21/s" would read as a quotient of numbers; "2 1/s" is unambiguous.
     const bool separated = is_blank(unit_text.front());
     if (!separated && !is_unit_character(unit_text.front())) return std::nullopt;
     const std::optional<Scale> scale = UnitParser(unit_text).parse();

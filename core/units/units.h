@@ -42,19 +42,19 @@ inline constexpr Dimension kInertia{2, 1, 0};
 inline constexpr Dimension kImpulse{1, 1, -1};
 inline constexpr Dimension kAngularMomentum{2, 1, -1};
 
-// A number in SI with its dimension; `bare` when no unit was written.
+// A number in SI units with its dimension; `bare` if written without a unit.
 struct Quantity {
   double value = 0.0;
   Dimension dimension;
   bool bare = true;
 };
 
-// Parses `NUMBER [UNIT]` (decimal, exponent; units with * / ^ and the prefixes in use). Empty for
-// anything else, for a non-finite number, or an unknown unit.
+// Parses `NUMBER [UNIT]` (decimal, exponent; units with * / ^ and common prefixes). Empty for
+// anything else, for a non-finite number, and for an unknown unit.
 std::optional<Quantity> parse_quantity(std::string_view text);
 // Parses a unit expression such as `kg m^2`, `1/s^2`, `Nm`, `%`: its SI factor and dimension.
 std::optional<Quantity> parse_unit(std::string_view text);
-// "a time", "a length", "a plain number", or the SI unit for what has no everyday name.
+// "a time", "a length", "a plain number"; the SI unit for dimensions without a common name.
 std::string dimension_name(Dimension dimension);
 // SI unit text for logs and plots: "m/s^2", "N", "Nm", "" for a plain number.
 std::string unit_text(Dimension dimension);

@@ -1,4 +1,4 @@
-// `base: OTHER.yaml`: one file on top of another; see yaml.h.
+// `base: OTHER.yaml`: merges a file over its base; see yaml.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ bool removes(const YamlNode& node) {
   return node.is_scalar() && !node.quoted && node.scalar == "off";
 }
 
-// Where the history is written, and the path of the map that is being merged.
+// Destination of the history, and the path of the map that is being merged.
 struct Recorder {
   YamlHistory* history = nullptr;
   std::string path{};
@@ -36,7 +36,7 @@ struct Recorder {
   }
 };
 
-// `KEY+: [...]`: puts the items behind those of the base's list KEY.
+// `KEY+: [...]`: appends the items to the base's list KEY.
 void append(YamlNode& base, YamlEntry&& own, const Recorder& recorder, Diagnostics& diagnostics) {
   const std::string key = own.key.substr(0, own.key.size() - 1);
   YamlEntry* const target = find_entry(base, key);
@@ -51,7 +51,7 @@ void append(YamlNode& base, YamlEntry&& own, const Recorder& recorder, Diagnosti
   }
 }
 
-// Puts `own` over `base`: maps by key, all else whole.
+// Merges `own` over `base`: maps key by key, everything else as a whole.
 void merge(YamlNode& base, YamlNode&& own, const Recorder& recorder, Diagnostics& diagnostics) {
   base.mark = own.mark;
   for (YamlEntry& entry : own.entries) {
@@ -75,7 +75,7 @@ void merge(YamlNode& base, YamlNode&& own, const Recorder& recorder, Diagnostics
   }
 }
 
-// The base's path as the user would write it from here.
+// The path of a base relative to the file that names it, for messages.
 std::string path_beside(const std::string& path, const std::string& other) {
   return (fs::path(path).parent_path() / other).lexically_normal().string();
 }
@@ -86,13 +86,13 @@ std::string identity(const std::string& path) {
   return error ? path : canonical.string();
 }
 
-// A file and its bases, as they are loaded.
+// A file and its bases while they are loaded.
 struct Chain {
-  std::vector<std::string> files{};  // from the first to the one that is being read
+  std::vector<std::string> files{};  // from the outermost file to the one being read
   YamlHistory* history = nullptr;
   const std::vector<std::string>& library;
   Diagnostics& diagnostics;
-  const std::vector<FileChange>* changes = nullptr;  // files that count as written
+  const std::vector<FileChange>* changes = nullptr;  // unsaved new contents of files
 };
 
 YamlNode load_file(const std::string& path, const Chain& chain) {
@@ -106,12 +106,12 @@ YamlNode load_file(const std::string& path, const Chain& chain) {
   return load_yaml_file(path, chain.diagnostics);
 }
 
-// The file that `base: NAME` means; empty and an error if there is none.
+// Resolves `base: NAME` to a path; empty and an error if not found.
 std::string find_base(const std::string& path, const YamlNode& base, Chain& chain) {
   const std::string& name = base.scalar;
   const std::string beside = path_beside(path, name);
   std::error_code error;
-  if (fs::is_regular_file(beside, error)) return beside;  // a pipe would be waited for
+  if (fs::is_regular_file(beside, error)) return beside;  // reading a pipe would block
   std::string problem = fmt::format("no file '{}'", beside);
   if (name.find('/') == std::string::npos && !chain.library.empty()) {
     std::vector<std::string> known;
@@ -134,7 +134,7 @@ std::string find_base(const std::string& path, const YamlNode& base, Chain& chai
 
 YamlNode load_chain(const std::string& path, Chain& chain);
 
-// Replaces a tree that names a base by the base with the tree over it.
+// Replaces a tree that names a base by the base with the tree merged over it.
 YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
   const YamlNode* const base_node = root.find("base");
   if (base_node == nullptr) return root;
@@ -152,7 +152,7 @@ YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
   }
   YamlNode base = load_chain(base_path, chain);
   if (base.is_null()) return {};
-  // The first key is the kind of file; one that begins with `base:` takes the kind from there.
+  // The first key is the kind of file; a file that begins with `base:` inherits its kind.
   const std::string& first = root.entries.front().key;
   if (!base.is_map() || (first != "base" && first != base.entries.front().key)) {
     chain.diagnostics.error(

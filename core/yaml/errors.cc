@@ -1,4 +1,4 @@
-// yaml-cpp's messages in plain words; see errors.h.
+// Rewrites yaml-cpp's messages; see errors.h.
 #include "core/yaml/errors.h"
 
 #include <yaml-cpp/exceptions.h>
@@ -11,7 +11,7 @@ namespace footfall::core {
 namespace {
 
 struct PlainWords {
-  std::string_view message;  // of yaml-cpp, or its beginning
+  std::string_view message;  // yaml-cpp's message, or its beginning
   std::string_view text;
 };
 

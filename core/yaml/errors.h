@@ -1,11 +1,11 @@
-// What the YAML parser complains about, in words that say what to do.
+// Replaces messages of the YAML parser by messages that name the remedy.
 #pragma once
 
 #include <string>
 
 namespace footfall::core {
 
-// The parser's message in plain words; unknown ones stay as they are.
+// The rewritten message; unknown messages are returned unchanged.
 std::string yaml_error_text(const std::string& message);
 
 }  // namespace footfall::core

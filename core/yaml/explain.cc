@@ -1,4 +1,4 @@
-// Where a value of a file comes from; see explain.h.
+// Origin of a value of a file; see explain.h.
 #include "core/yaml/explain.h"
 
 #include <fmt/format.h>
@@ -8,10 +8,10 @@
 namespace footfall::core {
 namespace {
 
-// What may stand at a place of a file: the table of the map there, or of what its names hold.
+// The schema at a path of a file: the table of the map, or the value type of its names.
 struct Expected {
   const KeyTable* table = nullptr;
-  const ValueSpec* named = nullptr;  // a map by name
+  const ValueSpec* named = nullptr;  // value type of a map with user-defined names
 };
 
 Expected behind(const KeySpec& key) {
@@ -24,7 +24,7 @@ Expected behind(const KeySpec& key) {
 
 Expected below_name(const ValueSpec& value) { return {value.map, nullptr}; }
 
-// The key at the head of `path`, the longest one that `map` has; its length, 0 if there is none.
+// Length of the longest key of `map` that `path` begins with, 0 if there is none.
 std::size_t key_length(const YamlNode& map, std::string_view path) {
   std::size_t longest = 0;
   for (const YamlEntry& entry : map.entries) {
@@ -45,7 +45,7 @@ std::vector<YamlChange> changes_of(const YamlHistory& history, const std::string
   for (auto change = history.rbegin(); change != history.rend(); ++change) {
     if (!is_at_or_in(path, change->path)) continue;
     YamlChange own = *change;
-    // What the value was inside of the map that was replaced.
+    // Old value, looked up inside the map that was replaced.
     std::string_view rest = std::string_view(path).substr(change->path.size());
     const YamlNode* node = &change->old;
     while (node != nullptr && !rest.empty()) {
@@ -73,7 +73,7 @@ void add_values(const YamlNode& node, const std::string& path, const YamlHistory
   values.push_back({path, true, node, changes_of(history, path)});
 }
 
-// Values that were in the map and are there no more.
+// Adds values that the map had before and that were removed.
 void add_removed(const std::string& path, const YamlHistory& history,
                  std::vector<ValueOrigin>& values) {
   for (const YamlChange& change : history) {

@@ -1,4 +1,4 @@
-// Where a value of a file comes from: the files of its `base:` chain, edits, defaults.
+// Origin of the values of a file: the files of its `base:` chain, edits, defaults.
 #pragma once
 
 #include <string>
@@ -10,25 +10,25 @@
 
 namespace footfall::core {
 
-// One value below the key that was asked for.
+// One value below the requested key.
 struct ValueOrigin {
   std::string path;
-  bool there = true;  // false: it was removed
+  bool there = true;  // false if it was removed
   YamlNode value;
-  std::vector<YamlChange> changes;  // to it or to what it is in, the last one first
+  std::vector<YamlChange> changes;  // changes of it or of a map that contains it, newest first
 };
 
 struct Explanation {
-  std::string problem;              // why there is nothing to say; empty: none
-  std::vector<ValueOrigin> values;  // the value itself, or every value of the map that it is
-  const KeySpec* key = nullptr;     // of the key's table: its meaning and default
+  std::string problem;              // reason why the key cannot be explained; empty if it can
+  std::vector<ValueOrigin> values;  // the value, or all values of the map
+  const KeySpec* key = nullptr;     // meaning and default in the key table; nullptr if absent
 };
 
-// The value at a path of keys (dots between; a key may hold dots itself). `table` says what keys
-// there could be; nullptr below names that are the author's own and in files without one.
+// Explains the value at a dotted path of keys (a key may contain dots). `table` is the schema of
+// the root, nullptr below user-defined names and in files without schema.
 Explanation explain(const YamlNode& root, const YamlHistory& history, const KeyTable* table,
                     std::string_view path);
-// Adds to `history` what an edit of the whole tree replaced.
+// Adds the differences between two trees, before and after an edit, to `history`.
 void add_differences(const YamlNode& before, const YamlNode& after, YamlHistory& history);
 
 }  // namespace footfall::core

@@ -1,4 +1,4 @@
-// Names by pattern; see glob.h.
+// Name patterns; see glob.h.
 #include "core/yaml/glob.h"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ bool is_glob(std::string_view text) { return text.find_first_of("*?") != std::st
 bool glob_matches(std::string_view pattern, std::string_view text) {
   std::size_t p = 0;
   std::size_t t = 0;
-  std::size_t star = std::string_view::npos;  // the last star, and what it stands for ends at `end`
+  std::size_t star = std::string_view::npos;  // the last star; the text matched by it ends at `end`
   std::size_t end = 0;
   while (t < text.size()) {
     if (p < pattern.size() && pattern[p] == '*') {

@@ -1,4 +1,4 @@
-// Names by pattern: `"*knee": 22` in per-joint maps, `["right_*"]` in lists. Load time only.
+// Name patterns: `"*knee": 22` in per-joint maps, `["right_*"]` in lists. Load time only.
 #pragma once
 
 #include <string>
@@ -10,20 +10,20 @@
 
 namespace footfall::core {
 
-// True if the text holds a `*` or `?`.
+// True if the text contains `*` or `?`.
 bool is_glob(std::string_view text);
-// `*` stands for any text, `?` for one character, all else for itself. Linear in time per star.
+// `*` matches any text, `?` one character, everything else itself. Linear in time per star.
 bool glob_matches(std::string_view pattern, std::string_view text);
 
-// For every one of `names`, the entry of the map that speaks of it, or nullptr: exact keys first,
-// then globs. Errors: a key that is no name (with the nearest), a glob that matches nothing, two
-// globs on one name. `what` is the kind of name, e.g. "joint". A node that is no map: an error.
+// For each of `names`, the entry of the map that applies to it, or nullptr: exact keys first, then
+// patterns. Errors: an unknown name (with the nearest known one), a pattern without a match, two
+// patterns that match one name, a node that is not a map. `what` is the kind of name, e.g. "joint".
 std::vector<const YamlEntry*> match_names(const YamlNode& map,
                                           const std::vector<std::string>& names,
                                           std::string_view what, Diagnostics& diagnostics);
 
-// The indices into `names` that a list of names and globs stands for, in the order of the list,
-// each once. Errors as above; a name given twice by exact text is an error too.
+// The indices into `names` selected by a list of names and patterns, in list order, each once.
+// Errors as above; repeating an exact name is an error too.
 std::vector<int> expand_names(const YamlNode& list, const std::vector<std::string>& names,
                               std::string_view what, Diagnostics& diagnostics);
 

@@ -1,4 +1,4 @@
-// Names out of key tables; see key_table.h.
+// Names from key tables; see key_table.h.
 #include "core/yaml/key_table.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// What a file may say, as data: every kind of map with its keys, every list of words. The loaders
-// take the names of keys and words from these tables, the JSON Schema and the reference are printed
-// from them; so none of the three can know a key that the others do not.
+// The file formats as data: every kind of map with its keys, every list of words. The loaders, the
+// JSON Schema and the reference all use these tables, so that none of the three can know a key that
+// the others do not.
 //
 // The tables are constants beside their loaders: behaviors/language/*.cc,
 // model/robot/keys.cc, sim/world/keys.cc. The functions are for load time.
@@ -21,28 +21,28 @@ namespace footfall::core {
 
 struct KeyTable;
 
-// A word with a fixed meaning (a type of task, a reaction, a function) and what it means.
+// A keyword (a task type, a reaction, a function) and its meaning.
 struct WordSpec {
   std::string_view word;
   std::string_view doc;
 };
 
-// What one value is.
+// Type of a value.
 enum class ValueKind : std::uint8_t {
-  none,          // unused place of KeySpec::values
+  none,          // unused element of KeySpec::values
   any,           // anything
-  text,          // any text that is not empty
-  name,          // of something, see ValueSpec::what
+  text,          // non-empty text
+  name,          // name of an object, see ValueSpec::what
   boolean,       // true, false
-  integer,       // a whole number
-  quantity,      // a number of one dimension
-  any_quantity,  // a number of any dimension, or of one that other keys decide
-  condition,     // an expression that is true or false; `=` is implied
+  integer,       // an integer
+  quantity,      // a number with a fixed dimension
+  any_quantity,  // a number with any dimension, or one that depends on other keys
+  condition,     // a boolean expression; `=` is implied
   choice,        // one of ValueSpec::words
-  map,           // with the keys of ValueSpec::map
+  map,           // a map with the keys of ValueSpec::map
 };
 
-// How many of them.
+// Structure of a value.
 enum class ValueForm : std::uint8_t {
   one,
   list,
@@ -52,28 +52,27 @@ enum class ValueForm : std::uint8_t {
   by_axis,  // one number for all axes, a list, or a map by axis (of joints: with globs)
 };
 
-// One thing that may stand under a key.
+// One alternative for the value of a key.
 struct ValueSpec {
   ValueKind kind = ValueKind::none;
   ValueForm form = ValueForm::one;
-  bool named = false;                  // a map of them by names of the author's own
-  bool expression = false;             // also `$parameter`, `= expression`, or a lone signal
-  Dimension dimension{};               // of a quantity
-  std::string_view what{};             // of a name or text: "a state"; else a closer word, or empty
-  const KeyTable* map = nullptr;       // of a map
-  std::span<const WordSpec> words{};   // of a choice
-  std::array<std::int64_t, 2> ends{};  // of an integer: least, greatest
+  bool named = false;                  // a map from user-defined names to such values
+  bool expression = false;             // also `$parameter`, `= expression` or a single signal
+  Dimension dimension{};               // for quantities
+  std::string_view what{};             // noun for messages, e.g. "a state"; may be empty
+  const KeyTable* map = nullptr;       // for maps
+  std::span<const WordSpec> words{};   // for choices
+  std::array<std::int64_t, 2> ends{};  // for integers: minimum, maximum
 };
 
 // One key of a map.
 struct KeySpec {
   std::string_view name{};
-  std::array<ValueSpec, 3> values{};  // any of these; the first ones, the rest are `none`
+  std::array<ValueSpec, 3> values{};  // alternatives; unused elements are `none`
   std::string_view doc{};             // one line
-  bool needed = false;                // an error without it
-  std::string_view fallback{};        // what holds without it, as one would write it; may be empty
-  std::string_view variants{};  // words of the table's selector that have this key, with blanks
-                                // between; empty: all
+  bool needed = false;                // required
+  std::string_view fallback{};        // default in YAML notation; may be empty
+  std::string_view variants{};  // selector words that have this key, blanks between; empty: all
 
   constexpr KeySpec required() const {
     KeySpec out = *this;
@@ -94,28 +93,28 @@ struct KeySpec {
 
 // One kind of map.
 struct KeyTable {
-  std::string_view id;                // short and unique in its file: "state"
+  std::string_view id;                // unique in its file: "state"
   std::string_view doc;               // one line or a few
-  std::span<const KeySpec> keys;      // in the order in which one would write them
-  const KeyTable* more = nullptr;     // whose keys it has too
-  const ValueSpec* others = nullptr;  // what stands under names of the author's own
-  std::string_view others_name{};     // what those names are: "a task"
-  // Of each of these lists of keys (blanks between) at least one must be there.
+  std::span<const KeySpec> keys;      // in recommended order
+  const KeyTable* more = nullptr;     // further keys, shared with other tables
+  const ValueSpec* others = nullptr;  // value type under user-defined names
+  std::string_view others_name{};     // kind of the user-defined names: "a task"
+  // For each of these key lists (separated by blanks), at least one key must be present.
   std::array<std::string_view, 2> one_of{};
-  bool part = false;                     // may be given in part, to be laid over another
-  bool empty = false;                    // nothing at all stands for the empty map
-  std::string_view selector{};           // key whose word decides which keys there are: "type"
-  std::span<const WordSpec> variants{};  // the words of the selector
+  bool part = false;                     // may be partial, to be merged over another map
+  bool empty = false;                    // an empty value is allowed and means the empty map
+  std::string_view selector{};           // key whose value selects the variant: "type"
+  std::span<const WordSpec> variants{};  // the possible values of the selector
 };
 
-// A kind of file; its first key is its name and version: `behavior: 1`.
+// A file format; its first key gives its kind and version: `behavior: 1`.
 struct FileTable {
   std::string_view kind;  // "behavior"
-  int newest = 1;         // version
+  int newest = 1;         // newest supported version
   const KeyTable* root = nullptr;
 };
 
-// Values, in a form that reads like a sentence in a table.
+// Constructors for values, so that the tables read like sentences.
 constexpr ValueSpec anything() { return {.kind = ValueKind::any}; }
 constexpr ValueSpec text_of(std::string_view what) {
   return {.kind = ValueKind::text, .what = what};
@@ -153,7 +152,7 @@ constexpr ValueSpec by_name(ValueSpec value) {
   return value;
 }
 constexpr ValueSpec by_axis(ValueSpec value) { return as(ValueForm::by_axis, value); }
-constexpr ValueSpec computed(ValueSpec value) {  // an expression may stand there
+constexpr ValueSpec computed(ValueSpec value) {  // allows an expression as well
   value.expression = true;
   return value;
 }
@@ -169,19 +168,19 @@ constexpr KeySpec key(std::string_view name, ValueSpec value, ValueSpec other, V
   return {.name = name, .values = {value, other, third}, .doc = doc};
 }
 
-// Whether a key may stand beside `variant` (a word of the selector; empty: not known).
+// Whether a key is allowed in `variant` (a word of the selector; empty if unknown).
 bool belongs_to(const KeySpec& key, std::string_view variant);
-// A key of a table (or of `more`) by name, nullptr if it has none.
+// A key of a table (or of `more`) by name, nullptr if absent.
 const KeySpec* find_key(const KeyTable& table, std::string_view name);
-// The names of all keys of a table, of one variant where it is known.
+// The names of all keys of a table, restricted to one variant if given.
 std::vector<std::string> key_names(const KeyTable& table, std::string_view variant = {});
-// Every kind of map that a file may hold, each once, from the root in the order of the keys.
+// Every kind of map in a file format, each once, depth first in key order.
 std::vector<const KeyTable*> tables_of(const FileTable& file);
 std::vector<std::string> word_names(std::span<const WordSpec> words);
-// The meaning of a word, empty if it is none of these.
+// The meaning of a word, empty if unknown.
 std::string_view doc_of(std::span<const WordSpec> words, std::string_view word);
 
-// value_reader's check_keys, require_key and read_choice with the names of a table.
+// check_keys, require_key and read_choice of value_reader with the names of a table.
 void check_keys(const YamlNode& map, const KeyTable& table, Diagnostics& diagnostics,
                 std::string_view variant = {});
 std::optional<int> read_choice(const YamlNode& node, std::span<const WordSpec> words,

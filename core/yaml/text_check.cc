@@ -1,4 +1,4 @@
-// What a YAML text must be before it is parsed; see text_check.h.
+// Checks a YAML text before it is parsed; see text_check.h.
 #include "core/yaml/text_check.h"
 
 #include <algorithm>
@@ -11,14 +11,14 @@ namespace footfall::core {
 
 namespace {
 
-// A tab in a line's indentation, also behind "- ": 1-based column, 0 if there is none.
+// 1-based column of a tab in a line's indentation, also behind "- "; 0 if there is none.
 int tab_in_indentation(std::string_view line) {
   std::size_t tab = line.size();
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '\t') {
       tab = std::min(tab, i);
     } else if (line[i] == '#' || line[i] == '\r') {
-      return 0;  // nothing but a comment
+      return 0;  // comment line
     } else if (line[i] != ' ' && !(line[i] == '-' && i + 1 < line.size() &&
                                    (line[i + 1] == ' ' || line[i + 1] == '\t'))) {
       return tab < i ? static_cast<int>(tab) + 1 : 0;

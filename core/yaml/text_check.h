@@ -1,4 +1,4 @@
-// What a YAML text must be before it is parsed. Load time only.
+// Checks a YAML text before it is parsed. Load time only.
 #pragma once
 
 #include <string_view>
@@ -7,10 +7,9 @@
 
 namespace footfall::core {
 
-// Reports what yaml-cpp would take, or take wrongly, each at its place (the first of a line, at
-// most 20): bytes that are not UTF-8 (ids "bad-text"), control characters, and tabs in the
-// indentation
-// ("tab"). True if there is nothing of the kind.
+// Reports text that yaml-cpp would accept or misread (one problem a line, at most 20): invalid
+// UTF-8 and control characters (id "bad-text"), tabs in the indentation (id "tab"). True if there
+// is none.
 bool check_text(std::string_view text, int file, Diagnostics& diagnostics);
 
 }  // namespace footfall::core

@@ -28,8 +28,8 @@ std::string alternatives(const std::vector<std::string>& words) {
   return out;
 }
 
-// The quantity in a plain scalar; text in quotes is text, but people quote numbers with a leading
-// `*`, `%` or `+`, so quotes do not matter here.
+// The quantity in a scalar. Quotes are ignored, because numbers with a leading `*`, `%` or `+` must
+// be quoted in YAML.
 std::optional<Quantity> quantity_of(const YamlNode& node) {
   return node.is_scalar() ? parse_quantity(node.scalar) : std::nullopt;
 }
@@ -39,7 +39,7 @@ bool is_reserved(std::string_view text) {
   return std::find(kReserved.begin(), kReserved.end(), text) != kReserved.end();
 }
 
-// The rule that a name breaks, or empty.
+// The rule that a name violates, or empty.
 std::string name_problem(std::string_view text) {
   if (is_reserved(text)) return fmt::format("'{}' cannot be a name", text);
   if (!is_name(text)) return "letters, digits and '_', no digit first";
@@ -61,7 +61,7 @@ std::string describe(const YamlNode& node) {
       break;
   }
   if (node.scalar.size() <= kShown) return "'" + node.scalar + "'";
-  std::size_t end = kShown;  // never inside a character
+  std::size_t end = kShown;  // do not cut inside a UTF-8 sequence
   while (end > 0 && (static_cast<unsigned char>(node.scalar[end]) & 0xc0u) == 0x80u) --end;
   return "'" + node.scalar.substr(0, end) + "...'";
 }
@@ -219,13 +219,13 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t mini
 }
 
 std::optional<std::int64_t> read_millihertz(const YamlNode& node, Diagnostics& diagnostics) {
-  constexpr double kFastest = 1e6;  // Hz, far above any servo
+  constexpr double kFastest = 1e6;  // Hz, far above any servo rate
   const std::optional<double> hertz =
       read_bounded(node, kRate, 1e-3, kFastest, diagnostics, "a rate in Hz");
   if (!hertz) return std::nullopt;
   const double exact = *hertz * 1e3;
   const double rounded = std::round(exact);
-  // A decimal with whole millihertz is off by rounding only; 1e-9 is far above that.
+  // An exact number of millihertz differs by rounding only, which is far below 1e-9.
   if (std::abs(exact - rounded) > 1e-9 * rounded) {
     diagnostics.error(node.mark, "rate",
                       fmt::format("expected a rate in whole millihertz, got {}", describe(node)));
@@ -259,7 +259,7 @@ bool is_name(std::string_view text) {
 
 bool is_dotted_name(std::string_view text) {
   const std::string parts = std::string(kLetters) + std::string(kDigits) + "-";
-  bool begins = true;  // a part
+  bool begins = true;  // at the beginning of a part
   for (const char c : text) {
     if (c == '.' ? begins : parts.find(c) == std::string::npos) return false;
     begins = c == '.';

@@ -1,6 +1,6 @@
-// YAML as our own immutable tree with exact positions; see yaml.h. Built from yaml-cpp's events
-// instead of its nodes: events give the place of every key and alias, show an alias to something
-// still open (a self-reference), and let us stop a document that expands beyond the budget.
+// YAML as an immutable tree with exact positions; see yaml.h. Built from yaml-cpp's events instead
+// of its nodes: events give the place of every key and alias, show an alias to a node that is still
+// open (a self-reference), and allow a document that expands beyond the budget to be stopped.
 #include "core/yaml/yaml.h"
 
 #include <fmt/format.h>
@@ -31,10 +31,10 @@ constexpr std::size_t kMaxExpandedBytes = 64u << 20;  // text of all scalars aft
 constexpr int kMaxNodes = 200'000;
 constexpr int kMaxDepth = 100;
 
-// Thrown through yaml-cpp to end a document; the problem is already in the diagnostics.
+// Thrown through yaml-cpp to end a document; the problem is already reported.
 struct Stop {};
 
-// Nodes, text and nesting of a finished subtree: what an alias to it costs.
+// Nodes, text and nesting of a finished subtree: the cost of an alias to it.
 struct Size {
   int nodes = 1;
   std::size_t bytes = 0;
@@ -60,9 +60,9 @@ class TreeBuilder : public YAML::EventHandler {
   TreeBuilder(int file, Diagnostics& diagnostics) : file_(file), diagnostics_(diagnostics) {}
 
   YamlNode take_root() { return std::move(root_); }
-  // Where the last scalar ended, about: escapes and folds make it longer than its value.
+  // Approximate end of the last scalar: with escapes and folds the source is longer than the value.
   std::size_t last_end() const { return last_end_; }
-  // Where the innermost list or map that is still open begins, else `fallback`.
+  // Start of the innermost open list or map, else `fallback`.
   Mark innermost(Mark fallback) const { return open_.empty() ? fallback : open_.back().node.mark; }
 
   void OnDocumentStart(const YAML::Mark&) override {}
@@ -74,7 +74,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (expects_key()) fail(node.mark, "missing-key-name", "expected a key, got nothing");
     if (in_map()) {
       const Frame& frame = open_.back();
-      // For `key:` the parser's mark is the token after it, perhaps lines below.
+      // For `key:` the parser's mark is at the next token, perhaps lines below.
       if (node.mark.line != frame.key.key_mark.line) node.mark = frame.key.key_mark;
       if (!frame.key.key_quoted && frame.key.key.find(':') != std::string::npos) {
         diagnostics_.error(
@@ -131,8 +131,8 @@ class TreeBuilder : public YAML::EventHandler {
     YAML::anchor_t anchor = YAML::NullAnchor;
     bool has_key = false;
     bool drop_value = false;                     // of a duplicate key
-    YamlEntry key;                               // waits for its value
-    std::unordered_map<std::string, int> lines;  // of the keys so far
+    YamlEntry key;                               // key that waits for its value
+    std::unordered_map<std::string, int> lines;  // lines of the keys read so far
   };
   using Anchored = std::pair<YamlNode, Size>;
 
@@ -185,12 +185,12 @@ class TreeBuilder : public YAML::EventHandler {
     finish(std::move(frame.node), frame.anchor);
   }
 
-  // A node is complete: remember it for aliases and hand it to its parent.
+  // Stores a complete node for aliases and adds it to its parent.
   void finish(YamlNode node, YAML::anchor_t anchor) {
     count(node.mark, 1, node.scalar.size());
     if (anchor != YAML::NullAnchor) {
       const Size size = size_of(node);
-      // The anchor's copy is memory too, so it counts; nested anchors cannot grow quadratically.
+      // The anchor's copy uses memory too, so it counts; nested anchors cannot grow quadratically.
       count(node.mark, size.nodes, size.bytes);
       anchors_[anchor] = std::make_unique<Anchored>(node, size);
     }
@@ -237,7 +237,7 @@ class TreeBuilder : public YAML::EventHandler {
   YamlNode root_;
 };
 
-// Reports what stands behind the first document, at its first event.
+// Reports content behind the first document, at its first event.
 class SecondDocument : public YAML::EventHandler {
  public:
   SecondDocument(int file, std::string_view text, Diagnostics& diagnostics)
@@ -268,7 +268,7 @@ class SecondDocument : public YAML::EventHandler {
   Diagnostics& diagnostics_;
 };
 
-// The place of the first quote at or behind `from`.
+// The position of the first quote at or behind `from`.
 Mark quote_after(std::string_view text, std::size_t from, int file) {
   const std::size_t quote = std::min(text.find_first_of("'\"", from), text.size());
   const std::string_view before = text.substr(0, quote);
@@ -284,8 +284,8 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
     return {};
   }
   if (!check_text(text, file, diagnostics)) return {};
-  // yaml-cpp takes a quote that is never closed as the rest of the file, without an error; the
-  // end-of-document mark is what it refuses inside quotes.
+  // yaml-cpp silently reads an unclosed quote as text up to the end of the file; but it refuses an
+  // end-of-document marker inside quotes, so that one is appended.
   if (text.empty() || text.back() != '\n') text += '\n';
   const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
   const int errors_before = diagnostics.error_count();
@@ -319,7 +319,7 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
   }
 }
 
-// The whole file (at most one byte more than allowed), or errno's text.
+// The whole file (truncated one byte above the limit), or errno's text.
 std::optional<std::string> read_file(const std::string& path, std::string& problem) {
   errno = 0;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),

@@ -1,9 +1,8 @@
-// YAML as our own immutable tree with exact positions; the only door to yaml-cpp.
+// YAML as an immutable tree with exact positions; the only use of yaml-cpp.
 //
-// Scalars stay text (YAML 1.2 meaning is given by the reader: only `true`/`false` are booleans).
-// Refused here, with a place: duplicate keys, tabs as indentation, `<<`, several documents, invalid
-// UTF-8, nesting deeper than 100, more than 200000 nodes after alias expansion, self-references,
-// files over 4 MB.
+// Scalars stay text (readers apply YAML 1.2: only `true`/`false` are booleans). Refused here, with
+// a position: duplicate keys, tabs as indentation, `<<`, several documents, invalid UTF-8, nesting
+// deeper than 100, more than 200000 nodes after alias expansion, self-references, files over 4 MB.
 #pragma once
 
 #include <string>
@@ -23,7 +22,7 @@ struct YamlNode {
   Kind kind = Kind::null;
   std::string scalar;              // text of a scalar
   bool quoted = false;             // written with quotes (or as a block scalar)
-  Mark mark;                       // where the node begins
+  Mark mark;                       // start of the node
   std::vector<YamlNode> items;     // of a sequence
   std::vector<YamlEntry> entries;  // of a map, in file order
 
@@ -31,7 +30,7 @@ struct YamlNode {
   bool is_scalar() const { return kind == Kind::scalar; }
   bool is_sequence() const { return kind == Kind::sequence; }
   bool is_map() const { return kind == Kind::map; }
-  // The value under a key, nullptr if there is none or this is not a map.
+  // The value under a key, nullptr if absent or if this is not a map.
   const YamlNode* find(std::string_view key) const;
 };
 
@@ -42,36 +41,35 @@ struct YamlEntry {
   YamlNode value;
 };
 
-// Reads a file; problems (also "cannot read") go to diagnostics, the result is then null.
+// Reads a file. Problems (also "cannot read") are added to diagnostics; the result is then null.
 YamlNode load_yaml_file(const std::string& path, Diagnostics& diagnostics);
-// The same from text; `name` stands for the file in messages.
+// Reads text; `name` is the file name in messages.
 YamlNode load_yaml_text(std::string_view text, const std::string& name, Diagnostics& diagnostics);
 
-// What a file did to a value of its base.
+// A change that a file makes to a value of its base.
 struct YamlChange {
   enum class Kind { replaced, removed, appended };
   Kind kind = Kind::replaced;
-  std::string path;  // of the value, keys with dots between
-  YamlNode old;      // what the base had, with its place
-  Mark mark;         // of what changed it
+  std::string path;  // dotted path of the value
+  YamlNode old;      // value in the base, with its position
+  Mark mark;         // position of the change
 };
 using YamlHistory = std::vector<YamlChange>;  // the innermost base's changes first
 
 // `base: OTHER.yaml` inheritance (relative to the file): maps merge by key in the base's order, new
-// keys last; everything else is replaced whole; `NAME: off` removes; `KEY+:` appends to a list.
-// Cycles and missing bases are errors. Load = load_yaml_file + resolve. What was
-// replaced on the way is added to `history`, if there is one.
-// A base is sought beside the file that names it, then as NAME or NAME.yaml in the folders
-// `library`.
+// keys last; everything else is replaced as a whole; `NAME: off` removes; `KEY+:` appends to a
+// list. Cycles and missing bases are errors. Equals load_yaml_file + resolve. Replaced values are
+// added to `history` if it is given. A base is searched beside the file that names it, then as NAME
+// or NAME.yaml in the folders `library`.
 YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
                              YamlHistory* history = nullptr,
                              const std::vector<std::string>& library = {});
-// load_yaml_with_base() as if the changes had been written.
+// load_yaml_with_base() as if the changes were already written.
 YamlNode load_changed_yaml_with_base(const std::string& path,
                                      const std::vector<FileChange>& changes,
                                      Diagnostics& diagnostics,
                                      const std::vector<std::string>& library);
-// The same for text; `base:` is relative to the folder of `name`.
+// load_yaml_with_base() for text; `base:` is relative to the folder of `name`.
 YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
                                   Diagnostics& diagnostics, YamlHistory* history = nullptr,
                                   const std::vector<std::string>& library = {});

@@ -12,9 +12,9 @@ namespace {
 
 using Kind = YamlToken::Kind;
 constexpr std::size_t kNoPlace = std::string_view::npos;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // counts in no mark's column
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // not counted in a mark's column
 
-// A text's tokens, their offsets those of the whole text.
+// Tokens of a text; offsets count from its first byte, including a byte order mark.
 std::optional<std::vector<YamlToken>> tokens_of(std::string_view text) {
   const std::size_t skipped = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   auto tokens = yaml_tokens(text.substr(skipped));
@@ -41,13 +41,13 @@ std::size_t token_at(std::string_view text, const std::vector<YamlToken>& tokens
              : static_cast<std::size_t>(found - tokens.begin());
 }
 
-// Behind the anchors that stand before a value.
+// Index of the first token after the anchors in front of a value.
 std::size_t skip_anchors(const std::vector<YamlToken>& tokens, std::size_t k) {
   while (k < tokens.size() && tokens[k].kind == Kind::property && tokens[k].text[0] == '&') ++k;
   return k;
 }
 
-// The value that an alias at `k` stands for: behind the last anchor of its name before it.
+// The value of an alias at `k`: behind the last earlier anchor of the same name.
 std::size_t follow_alias(const std::vector<YamlToken>& tokens, std::size_t k) {
   const std::string anchor = "&" + tokens[k].text.substr(1);
   for (std::size_t before = k; before-- > 0;) {
@@ -58,8 +58,8 @@ std::size_t follow_alias(const std::vector<YamlToken>& tokens, std::size_t k) {
   return kNoPlace;
 }
 
-// The token behind the last one of the value or entry that begins at `k`, in a block whose keys
-// stand at `column`: comments and what follows belong to others.
+// Index after the last token of the value or entry that begins at `k`, in a block whose keys are at
+// `column`; trailing comments are excluded.
 std::size_t end_of_entry(const std::vector<YamlToken>& tokens, std::size_t k, std::size_t column) {
   std::size_t end = k + 1;
   int depth = 0;
@@ -91,7 +91,7 @@ std::string nested(const std::vector<std::string>& path, std::size_t first,
   return out;
 }
 
-// Behind the last entry of a map in braces.
+// Adds behind the last entry of a map in braces.
 std::optional<TextEdit> add_to_flow(const std::vector<YamlToken>& tokens, std::size_t open,
                                     const std::vector<std::string>& path, std::size_t first,
                                     const std::string& value) {
@@ -113,7 +113,7 @@ std::optional<TextEdit> add_to_flow(const std::vector<YamlToken>& tokens, std::s
   return TextEdit{end_of(tokens[last]), end_of(tokens[last]), entry};
 }
 
-// The lines of an entry in a block map: keys on lines of their own but for the innermost map.
+// The lines of an entry in a block map: one line a key except for the innermost map.
 std::string block_lines(const std::vector<std::string>& path, std::size_t first,
                         const std::string& value, std::size_t column, const std::string& line_end) {
   const std::size_t braces = std::max(first + 1, path.size() - 1);  // first key inside braces
@@ -125,16 +125,16 @@ std::string block_lines(const std::vector<std::string>& path, std::size_t first,
   return out;
 }
 
-// Behind the last entry of a map with a line for each.
+// Adds a line behind the last entry of a block map.
 std::optional<TextEdit> add_to_block(std::string_view text, const std::vector<YamlToken>& tokens,
                                      const YamlNode& map, const std::vector<std::string>& path,
                                      std::size_t first, const std::string& value) {
   const std::size_t key = token_at(text, tokens, map.entries.back().key_mark);
   if (key == kNoPlace) return std::nullopt;
   const std::size_t column = tokens[key].column;
-  if (!tokens[key].begins_line) return std::nullopt;  // `- key: ...`: where others stand is unsure
+  if (!tokens[key].begins_line) return std::nullopt;  // `- key:`: the column is ambiguous
   const std::size_t last = end_of_entry(tokens, key, column) - 1;
-  // A block scalar's lines belong to its header: up to the line of what follows.
+  // The lines of a block scalar belong to its header, up to the line of the next token.
   std::size_t at = end_of(tokens[last]);
   if (tokens[last].kind == Kind::block) {
     if (last + 1 >= tokens.size()) return std::nullopt;
@@ -162,7 +162,7 @@ std::optional<TextEdit> find_scalar(std::string_view text, Mark mark) {
   }
   if (k >= tokens->size()) return std::nullopt;
   const YamlToken& token = (*tokens)[k];
-  // A plain word behind a plain one is the next key, or the rest of this text.
+  // A plain word after another one is the next key, or a continuation line.
   const auto kind_at = [&](std::size_t i) {
     return i < tokens->size() ? (*tokens)[i].kind : Kind::marker;
   };

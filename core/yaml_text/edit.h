@@ -1,5 +1,5 @@
-// Edits of single values in the text of a YAML file: every byte but the value's own stays.
-// Load-time tools only; nothing here knows what the values mean.
+// Edits single values in the text of a YAML file; all other bytes stay unchanged. Load-time tools
+// only; independent of the meaning of the values.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +13,23 @@
 
 namespace footfall::core {
 
-// The bytes [begin, end) of a text, and what stands there instead.
+// Replacement of the bytes [begin, end) of a text.
 struct TextEdit {
   std::size_t begin = 0, end = 0;
   std::string text;
 };
 
-// The scalar that begins at a mark's line and column, with its quotes; of an alias, the scalar that
-// its anchor names. Nothing: there is none, or it goes over several lines.
+// The scalar that begins at a mark's line and column, including quotes; for an alias, the scalar at
+// its anchor. nullopt if absent or if it spans several lines.
 std::optional<TextEdit> find_scalar(std::string_view text, Mark mark);
 
-// The edit that puts `value` (flow YAML) under a path of keys that is not there yet, behind the
-// last entry of the innermost map that is, in that map's layout. `root` is the text's own tree.
-// Nothing where a key on the way holds something else than a map, or in a layout that this does not
-// know.
+// The edit that inserts `value` (flow YAML) under a path of missing keys, behind the last entry of
+// the innermost existing map and in that map's layout. `root` is the tree of the text. nullopt if a
+// key on the path holds something other than a map, or if the layout is unsupported.
 std::optional<TextEdit> add_value(std::string_view text, const YamlNode& root,
                                   const std::vector<std::string>& path, const std::string& value);
 
-// The text with all edits made; equal ones count once. Nothing if two of them meet otherwise.
+// Applies all edits; equal edits count once. nullopt if two different edits overlap.
 std::optional<std::string> apply_edits(std::string_view text, std::vector<TextEdit> edits);
 
 }  // namespace footfall::core

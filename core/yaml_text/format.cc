@@ -1,5 +1,6 @@
-// The canonical layout of YAML; see format.h. The indentation of the block structure is kept
-// on a stack of levels, brackets on another one. Comments wait for the line that they stand before.
+// The canonical layout of YAML; see format.h. The indentation of the block structure is kept on a
+// stack of levels, brackets on another one. Comments are held back until the indentation of the
+// following line is known.
 #include "core/yaml_text/format.h"
 
 #include <algorithm>
@@ -15,23 +16,23 @@ namespace {
 using Kind = YamlToken::Kind;
 constexpr std::size_t kLongestLine = 160, kBrokenWidth = 120;
 
-// A block map or list: where it was indented, and where it is now.
+// A block map or list: its old and new indentation.
 struct Level {
   std::size_t column = 0, indent = 0;
   bool list = false;
 };
 
 struct Bracket {
-  std::size_t inner = 0;  // column of what stands in it on further lines
-  std::size_t close = 0;  // column of its end, if that begins a line
+  std::size_t inner = 0;  // column of continuation lines inside the brackets
+  std::size_t close = 0;  // column of the closing bracket, if it begins a line
 };
 
-// Where a line may be broken: behind a comma and its blank.
+// A possible line break: behind a comma and its blank.
 struct Break {
   std::size_t at = 0, depth = 0, indent = 0;
 };
 
-// Keys whose values are texts, never quantities.
+// Keys whose values are text, never quantities.
 bool is_text_key(std::string_view key) {
   static constexpr std::array<std::string_view, 9> kKeys = {
       "doc", "name", "model", "robot", "world", "base", "reason", "log", "behavior"};
@@ -47,7 +48,7 @@ class Layout {
       add_line(tokens.first(count));
       tokens = tokens.subspan(count);
     }
-    before_ = levels_;  // what is behind the last line stays at its level
+    before_ = levels_;  // comments behind the last line keep their level
     write_comments(0, 0);
     return std::move(out_);
   }
@@ -80,11 +81,11 @@ class Layout {
     end_line();
   }
 
-  // The indentation of a key or a dash at `column`, whose level is opened if it is new.
+  // The indentation of a key or a dash at `column`; opens a new level if necessary.
   std::size_t enter(std::size_t column, bool list) {
     while (!levels_.empty() && levels_.back().column > column) levels_.pop_back();
     if (!list && !levels_.empty() && levels_.back().list && levels_.back().column == column) {
-      levels_.pop_back();  // a list that was not indented below its key ends here
+      levels_.pop_back();  // a list not indented below its key ends here
     }
     const bool same =
         !levels_.empty() && levels_.back().column == column && levels_.back().list == list;
@@ -92,7 +93,7 @@ class Layout {
     return levels_.back().indent;
   }
 
-  // The levels that a line of the block structure opens; its own indentation.
+  // Opens the levels of a line of the block structure; returns the line's own indentation.
   std::size_t enter_all(std::span<const YamlToken> tokens) {
     before_ = levels_;
     std::optional<std::size_t> indent;
@@ -121,7 +122,7 @@ class Layout {
     const YamlToken& first = tokens.front();
     const bool key = tokens.size() > 1 && tokens[1].kind == Kind::colon;
     if (plain_goes_on_ && first.kind == Kind::plain && !key) {
-      out_.append(first.empty_lines, '\n');  // inside a scalar each is a line end
+      out_.append(first.empty_lines, '\n');  // inside a scalar every empty line is significant
     } else if (first.empty_lines > 0 && !out_.empty()) {
       out_ += '\n';
     }
@@ -131,8 +132,8 @@ class Layout {
     breaks_.clear();
   }
 
-  // Comments that waited for a line at `column`, written at `indent`: each takes the indentation of
-  // the line, or of the level that it was written at.
+  // Writes held-back comments before a line at `column` with indentation `indent`: each takes the
+  // indentation of the line, or of the level at which it was written.
   void write_comments(std::size_t column, std::size_t indent) {
     for (const YamlToken& comment : comments_) {
       std::size_t own = indent;
@@ -203,14 +204,15 @@ class Layout {
   void open_bracket(const YamlToken& token, bool hanging) {
     line_ += token.text;
     if (hanging) {
-      // In block structure the end, too, must be indented more than the key.
+      // In block structure the closing bracket must be indented more than the key, too.
       brackets_.push_back({base_ + 2, flow() ? base_ : base_ + 2});
     } else {
       brackets_.push_back({line_.size(), line_.size() - 1});
     }
   }
 
-  // One over several lines is indented anew: the blanks around its line ends mean nothing.
+  // A quoted text over several lines is indented anew: blanks around its line ends are
+  // insignificant.
   void add_quoted(const std::string& text) {
     if (text.find('\n') == std::string::npos) {
       line_ += canonical_quoted(text);
@@ -255,8 +257,8 @@ class Layout {
     block_ = nullptr;
   }
 
-  // Breaks the line at the last comma before column 120 that is in the fewest brackets; what stays
-  // open behind it moves. False if there is none.
+  // Breaks the line at the last comma before column 120 with the fewest enclosing brackets; the
+  // indentation of brackets still open is updated. False if there is none.
   bool break_line() {
     const Break* best = nullptr;
     for (const Break& candidate : breaks_) {

@@ -34,7 +34,7 @@ std::string spaced_quantity(const std::string& text) {
   };
   skip_digits();
   if (end == digits) return text;
-  // An exponent has digits: the `e` of `2eV` is none.
+  // An exponent needs digits: the `e` of `2eV` is not one.
   std::size_t exponent = end;
   if (exponent < text.size() && (text[exponent] == 'e' || text[exponent] == 'E')) {
     ++exponent;

@@ -34,7 +34,7 @@ class Scanner {
     while (at_ < in_.size() && (in_[at_] == ' ' || in_[at_] == '\t')) ++at_;
   }
 
-  // What the layout needs to know about the place: how much is before it in its line.
+  // Records the position data needed by the layout, such as the text before the token in its line.
   void add(YamlToken::Kind kind, std::size_t begin, std::size_t end) {
     YamlToken token;
     token.kind = kind;
@@ -110,7 +110,7 @@ class Scanner {
                        tokens_.back().kind == YamlToken::Kind::property);
   }
 
-  // Whether the `:` at `at` ends a key; after a quoted key inside brackets nothing need follow it.
+  // Whether the `:` at `at` ends a key; after a quoted key inside brackets no blank is required.
   bool is_colon(std::size_t at, bool after_quote) const {
     if (at >= in_.size() || in_[at] != ':') return false;
     return ends_word(at + 1) || (depth_ > 0 && (after_quote || is_flow(in_[at + 1])));
@@ -150,7 +150,7 @@ class Scanner {
     read_colon(true);
   }
 
-  // The column that the text of a block scalar must be indented more than.
+  // The text of a block scalar must be indented more than this column.
   std::size_t parent_column() const {
     for (std::size_t k = tokens_.size(); k-- > 0;) {
       if (tokens_[k].kind == YamlToken::Kind::dash) return tokens_[k].column;
@@ -195,7 +195,7 @@ class Scanner {
       lines.emplace_back(empty ? std::string_view() : line.substr(indent));
       at_ = std::min(stop + 1, in_.size());
     }
-    // Empty lines at the end count only with `+`.
+    // Empty lines at the end are significant only with `+`.
     while (header.find('+') == std::string::npos && !lines.empty() && lines.back().empty()) {
       lines.pop_back();
       ++empty_lines_;
@@ -206,7 +206,7 @@ class Scanner {
   std::string_view in_;
   std::size_t at_ = 0, line_begin_ = 0, empty_lines_ = 0;
   int depth_ = 0;
-  bool first_ = true;  // nothing was read in this line yet
+  bool first_ = true;  // no token read in this line yet
   std::vector<YamlToken> tokens_;
 };
 

@@ -8,7 +8,7 @@
 namespace footfall::core {
 namespace {
 
-// Whether a plain scalar would be read as the same text, inside brackets too.
+// Whether the text, unquoted, reads back as the same text, inside brackets too.
 bool may_be_plain(const std::string& text) {
   if (text.empty() || text.front() == ' ' || text.back() == ' ' || text.back() == ':') return false;
   if (std::string_view("#&*!|>'\"%@`?,[]{}").find(text.front()) != std::string_view::npos)
@@ -40,7 +40,7 @@ std::string scalar_text(const std::string& text, bool quoted) {
 
 void write_block(const YamlNode& node, std::size_t indent, std::size_t width, std::string& out);
 
-// A value behind `KEY:` or `-`, the line so far being in `out`.
+// Writes a value behind `KEY:` or `-`; `out` holds the line so far.
 void write_value(const YamlNode& node, std::size_t column, std::size_t indent, std::size_t width,
                  std::string& out) {
   if (node.is_null()) {

@@ -1,4 +1,4 @@
-// What speaks against a live edit, as texts for people; see door.h.
+// Reasons against a live edit, as text; see door.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string with_unit(double value, const ParameterInfo& info) {
   return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
-// One value of a parameter: finite, in its range; a gain without a range is not negative.
+// One value of a parameter: finite, within its range; a gain without range must not be negative.
 void check_value(const ParameterInfo& info, int component, double value,
                  std::vector<std::string>& reasons) {
   const std::string name = info.size == 1 ? info.name : fmt::format("{}[{}]", info.name, component);

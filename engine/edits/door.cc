@@ -1,4 +1,4 @@
-// The queues of edits and their application; see door.h.
+// Queues and application of edits; see door.h.
 #include "engine/edits/door.h"
 
 #include <algorithm>
@@ -165,7 +165,7 @@ void EditDoor::take(EditEntrance& entrance, std::int64_t tick,
   }
 }
 
-// A later edit of a slot takes it over from where the earlier one has brought it.
+// A later edit of a slot continues from the value reached by the earlier one.
 void EditDoor::write(const EditOrder& order, std::int64_t tick, std::span<double> values,
                      std::span<double> former) noexcept {
   const bool smooth = is_smooth(order.source);

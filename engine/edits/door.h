@@ -1,7 +1,7 @@
-// The one door for live edits: a batch of new values and events is checked whole, waits in a
-// bounded queue, and is applied whole or not at all at the start of a tick, before the machine's.
-// Each thread that submits has an entrance of its own; the tick applies what came through the
-// first, then the second; nobody waits for anybody.
+// The only way for live edits: a batch of new values and events is validated as a whole, waits in a
+// bounded queue, and is applied as a whole or not at all at the start of a tick, before the
+// machine's tick. Each submitting thread has its own entrance; the tick applies the batches of the
+// first, then of the second; no thread waits for another one.
 #pragma once
 
 #include <array>
@@ -23,66 +23,67 @@ struct TakeOverMap;
 
 namespace footfall::engine {
 
-// Who asks. `set` and `command` may also write what is not live, within its range.
+// Origin of an edit. `set` and `command` may also write parameters that are not live, within their
+// range.
 enum class EditSource : std::uint8_t {
-  live,      // a person, over the network or a tool
+  live,      // a user, over the network or a tool
   scenario,  // `edit` of a scenario
   set,       // `set` of a scenario
   command,   // the command line's --goal and --goal-velocity
-  replay,    // as it was logged
+  replay,    // from a log
 };
 const char* edit_source_name(EditSource source);
 
 // New values of a parameter or gain.
 struct EditValue {
   int parameter = -1;          // into Behavior::parameters
-  int component = -1;          // one of its values; -1: all of them
-  std::vector<double> values;  // SI, one for each that is meant
+  int component = -1;          // one of its components; -1: all
+  std::vector<double> values;  // SI, one for each of these components
 };
 
 struct EditBatch {
-  std::uint64_t id = 0;  // the asker's; 0: the door gives one
+  std::uint64_t id = 0;  // chosen by the sender; 0: chosen by the door
   EditSource source = EditSource::live;
   std::vector<EditValue> values;
-  double over = 0.0;                      // s: the values move linearly, tick by tick
-  std::vector<int> events;                // into Behavior::events, raised in the tick that applies
-  std::optional<std::uint64_t> revision;  // refused unless this many batches were applied before
-  std::string who;                        // for the log; printable, cut at kMaxWho bytes
-  std::string note;                       // likewise, kMaxNote bytes: `undo`
+  double over = 0.0;                      // s, duration of a linear ramp of the values
+  std::vector<int> events;                // into Behavior::events, raised in the same tick
+  std::optional<std::uint64_t> revision;  // refused unless this many were applied before
+  std::string who;                        // for the log; printable, truncated to kMaxWho bytes
+  std::string note;                       // same, kMaxNote bytes: `undo`
 };
 
-// What submit() says at once: accepted, or every reason against it.
+// Immediate result of submit(): accepted, or all reasons against it.
 struct EditReply {
   std::uint64_t id = 0;
   std::vector<std::string> reasons;
   bool accepted() const { return reasons.empty(); }
 };
 
-// refused: what did not come so far is told to the log (EditEntrance::tell_refused).
+// refused: rejected before the queue, only logged (EditEntrance::tell_refused).
 enum class EditOutcome : std::uint8_t { applied, stale_revision, refused };
 
-// What the tick says later, in the order of submission.
+// Result from the tick, in the order of submission.
 struct EditAnswer {
   std::uint64_t id = 0;
   EditOutcome outcome = EditOutcome::applied;
   std::int64_t tick = 0;
-  std::uint64_t revision = 0;  // batches applied so far, this one included
+  std::uint64_t revision = 0;  // batches applied so far, including this one
   std::size_t value_count = 0;
 };
 
 struct SlotValue {
-  int slot = 0;  // of Machine::parameters()
+  int slot = 0;  // index in Machine::parameters()
   double value = 0.0;
 };
 
-inline constexpr std::size_t kMaxEditEvents = 16;  // of one batch
+inline constexpr std::size_t kMaxEditEvents = 16;  // limit per batch
 inline constexpr std::size_t kMaxWho = 48, kMaxNote = 160;
 
-// A short text that a queue can carry.
+// A short text of fixed capacity, for queues.
 template <std::size_t N>
 class FixedText {
  public:
-  // Cut at N bytes, never within a UTF-8 character.
+  // Truncates to N bytes at a UTF-8 character boundary.
   void set(std::string_view text) noexcept {
     size_ = text.size() <= N ? text.size() : N;
     while (size_ < text.size() && size_ > 0 &&
@@ -98,12 +99,12 @@ class FixedText {
   std::size_t size_ = 0;
 };
 
-// A batch on its way through the queue, and what was done with it.
+// A batch in the queue, and its result.
 struct EditOrder {
   std::uint64_t id = 0;
   EditSource source = EditSource::live;
   std::int64_t ramp_ticks = 0;    // 0: at once
-  std::vector<SlotValue> values;  // room for every slot; the first value_count count
+  std::vector<SlotValue> values;  // capacity for every slot; the first value_count are valid
   std::size_t value_count = 0;
   std::array<int, kMaxEditEvents> events{};
   std::size_t event_count = 0;
@@ -111,7 +112,7 @@ struct EditOrder {
   std::uint64_t expected_revision = 0;
   FixedText<kMaxWho> who;
   FixedText<kMaxNote> note;
-  // Of the tick:
+  // Set by the tick:
   EditOutcome outcome = EditOutcome::applied;
   std::uint64_t revision = 0;
 
@@ -119,33 +120,34 @@ struct EditOrder {
   std::span<const int> new_events() const noexcept { return {events.data(), event_count}; }
 };
 
-// Where one thread submits its batches and takes their answers.
+// Entrance of one thread: submits batches and takes answers.
 class EditEntrance {
  public:
   EditEntrance(const behaviors::Behavior& behavior, std::size_t capacity,
                const std::atomic<std::uint64_t>& revision);
 
-  // Every reason against the batch, each a text for people; none: it is in the queue. Batches of
-  // one entrance that meet in one tick are applied in the order of their submission.
+  // Returns all reasons against the batch, each as text; if there are none, it is in the queue.
+  // Batches of one entrance in one tick are applied in the order of submission.
   EditReply submit(const EditBatch& batch);
-  // What a log recorded, unchecked but for its indices; false: no room, or not of this behavior.
+  // Submits an order from a log, with only its indices checked; false if full or of another
+  // behavior.
   bool resubmit(const EditOrder& order);
-  // A batch that came no further, for the log, in its turn; without answer. False: no room.
+  // Logs a batch that was refused before the queue, in order; without answer. False if full.
   bool tell_refused(EditSource source, std::string_view who, std::string_view note) noexcept;
-  // The next answer; false: none yet. Answers must be taken: submit() refuses a batch while as many
-  // as the queue has places are not. `former` gets, as far as it has room, where each value of the
-  // batch was, or was going, before.
+  // Takes the next answer; false if there is none. Answers must be taken: submit() refuses batches
+  // while the queue's capacity is used by untaken answers. `former` gets, as far as it has room,
+  // the previous value or ramp target of each value of the batch.
   bool take_answer(EditAnswer& answer, std::span<double> former = {}) noexcept;
-  // Batches submitted whose answers were not taken.
+  // Number of submitted batches whose answers were not taken.
   std::size_t outstanding() const noexcept { return outstanding_; }
-  // Batches applied so far, from any entrance.
+  // Number of batches applied so far, through any entrance.
   std::uint64_t revision() const noexcept { return revision_.load(std::memory_order_acquire); }
 
  private:
   friend class EditDoor;
   struct Answer {
     EditAnswer answer;
-    std::vector<double> former;  // room for every slot
+    std::vector<double> former;  // capacity for every slot
   };
   EditOrder* free_order() noexcept;
   void publish() noexcept;
@@ -154,62 +156,62 @@ class EditEntrance {
   core::Ring<EditOrder> orders_;
   core::Ring<Answer> answers_;
   const std::atomic<std::uint64_t>& revision_;
-  std::uint64_t next_id_ = 1;    // of the submitting thread
-  std::size_t outstanding_ = 0;  // submitted, answer not taken; likewise
-  std::size_t taken_ = 0;        // of the tick: orders that it still shows
+  std::uint64_t next_id_ = 1;    // used by the submitting thread
+  std::size_t outstanding_ = 0;  // submitted, answer not taken; same thread
+  std::size_t taken_ = 0;        // used by the tick: orders of the last apply()
 };
 
 class EditDoor {
  public:
-  // Each entrance has room for `capacity` batches between submission and the end of the tick that
-  // applies them.
+  // Each entrance has a capacity of `capacity` batches between submission and the end of the tick
+  // that applies them.
   explicit EditDoor(const behaviors::Behavior& behavior, std::size_t capacity = 64,
                     std::size_t entrances = 2);
 
-  // --- Threads that submit, each at its own entrance: 0 is that of the thread that ticks (goals,
-  // scenarios), 1 that of the network. ---
+  // --- Submitting threads, each at its own entrance: 0 for the tick's thread (goals, scenarios), 1
+  // for the network. ---
   EditEntrance& entrance(std::size_t i) noexcept { return entrances_[i]; }
   // Entrance 0.
   EditReply submit(const EditBatch& batch) { return entrances_[0].submit(batch); }
   bool resubmit(const EditOrder& order) { return entrances_[0].resubmit(order); }
   bool take_answer(EditAnswer& answer) noexcept { return entrances_[0].take_answer(answer); }
-  // Batches applied so far.
+  // Number of batches applied so far.
   std::uint64_t revision() const noexcept { return revision_.load(std::memory_order_acquire); }
 
-  // --- The tick; allocates nothing. ---
-  // Moves what ramps, then applies what waits, entrance by entrance: writes parameters, raises
-  // outside events. A batch whose events find no room in the machine's queue waits for the next
-  // tick, and those behind it.
+  // --- The tick; allocates nothing. --- Advances ramps, then applies waiting batches, entrance by
+  // entrance: writes parameters, raises external events. If the machine's queue has no room for a
+  // batch's events, it waits for the next tick, and so do those behind it.
   void apply(std::int64_t tick, behaviors::Machine& machine) noexcept;
-  // What the last apply() took from the queues, in order; valid until the next apply().
+  // Orders applied by the last apply(), in order; valid until the next apply().
   std::size_t taken() const noexcept { return taken_.size(); }
   const EditOrder& taken(std::size_t i) const noexcept { return *taken_[i]; }
   // Whether the last apply() wrote values of a live or scenario edit, by ramp or at once.
   bool moved() const noexcept { return moved_; }
-  // Where each of `values` goes: the end of its ramp, itself if it is at rest.
+  // Target of each of `values`: the end of its ramp, or the value itself if it is at rest.
   void copy_targets(std::span<const double> values, std::span<double> targets) const noexcept;
 
-  // Between two ticks, in the place of another behavior's door (engine/tick/take_over.cc).
+  // Between two ticks: replaces the door of another behavior (engine/tick/take_over.cc).
   struct TakeOver {
     const behaviors::Behavior& from;
-    const behaviors::Behavior& to;  // this door's
+    const behaviors::Behavior& to;  // the behavior of this door
     const behaviors::TakeOverMap& map;
-    std::span<const double> before;  // values in force so far, of `from`
-    std::span<const double> own;     // of this door's machine, which will go on from `before`
+    std::span<const double> before;  // current values, of `from`
+    std::span<const double> own;     // initial ones of this door's machine
     std::int64_t tick = 0;
-    std::int64_t periods = 0;  // over which values go to where they are to be; 0: in this tick
+    std::int64_t periods = 0;  // duration of the ramps to the new values, ticks; 0: in this tick
   };
-  // An edited value stays where the two files say the same, else the own one comes in force. What
-  // waits in the old door is answered there with stale_revision, since the revision grows by one.
+  // How differing parameter values take effect: an edited value is kept if both files have the same
+  // value, otherwise the new file's value is used. Edits waiting in the old door are answered with
+  // stale_revision, because the revision is incremented.
   void take_over(EditDoor& old, const TakeOver& change) noexcept;
-  // Nothing ramps any more: what moved stays where it is.
+  // Stops all ramps; their values stay as they are.
   void rest() noexcept;
 
  private:
   struct Ramp {
     double from = 0.0, to = 0.0;
     std::int64_t start = 0, ticks = 0;  // ticks 0: at rest
-    bool smooth = false;                // torque steps are to be limited
+    bool smooth = false;                // torque steps are limited during the ramp
   };
   void take_slot(const EditDoor& old, const behaviors::ParameterInfo& info, int slot, double own,
                  const TakeOver& change) noexcept;
@@ -221,22 +223,23 @@ class EditDoor {
 
   std::atomic<std::uint64_t> revision_{0};
   std::deque<EditEntrance> entrances_;
-  // Of the tick:
+  // Used by the tick:
   std::vector<const EditOrder*> taken_;
   std::vector<Ramp> ramps_;  // by slot
-  std::vector<int> moving_;  // slots that ramp
+  std::vector<int> moving_;  // slots with active ramps
   bool moved_ = false;
 };
 
-// Every reason against a batch, naming parameter, value, unit and range; `revision`: in force.
+// All reasons against a batch, naming parameter, value, unit and range; `revision`: the current
+// one.
 std::vector<std::string> reasons_against(const behaviors::Behavior& behavior,
                                          const EditBatch& batch, std::uint64_t revision);
 
-// Over which a batch's values move, s: a person's at least over the robot's edit_ramp, since what
-// is turned at once would step the torque.
+// Duration of a batch's ramps, s: at least the robot's edit_ramp for edits by users, because a step
+// of a value could cause a torque step.
 double ramp_time(const behaviors::Behavior& behavior, const EditBatch& batch);
 
-// Events that the engine raises itself: they cannot come from outside.
+// Whether the engine raises the event itself: then it cannot be raised externally.
 bool is_built_in_event(const behaviors::Behavior& behavior, int event);
 
 }  // namespace footfall::engine

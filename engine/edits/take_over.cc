@@ -1,4 +1,4 @@
-// The door's part of a bumpless transfer: edits of the former behavior go on; see door.h.
+// The door's part of a bumpless transfer: continues the edits of the former behavior; see door.h.
 #include <bit>
 
 #include "behaviors/compiled/take_over_map.h"
@@ -31,7 +31,7 @@ void EditDoor::take_over(EditDoor& old, const TakeOver& change) noexcept {
   revision_.store(revision, std::memory_order_release);
 }
 
-// What the behavior sets itself stays as it is.
+// Variables, which the behavior sets itself, are kept.
 void EditDoor::take_slot(const EditDoor& old, const behaviors::ParameterInfo& info, int slot,
                          double own, const TakeOver& change) noexcept {
   const std::size_t was = at(change.map.slots[at(slot)]);
@@ -62,9 +62,9 @@ void EditDoor::refuse_waiting(EditEntrance& entrance, std::int64_t tick,
   const std::size_t waiting = entrance.orders_.waiting();
   for (std::size_t i = 0; i < waiting; ++i) {
     const EditOrder& order = entrance.orders_.at(i);
-    if (order.outcome == EditOutcome::refused) continue;  // has no answer
+    if (order.outcome == EditOutcome::refused) continue;  // it has no answer
     EditEntrance::Answer* answer = entrance.answers_.next();
-    if (answer == nullptr) break;  // nobody takes them
+    if (answer == nullptr) break;  // answers are not being taken
     answer->answer = {order.id, EditOutcome::stale_revision, tick, revision, 0};
     entrance.answers_.publish();
   }

@@ -1,5 +1,5 @@
-// A socket that hears and LCM's C interface, which publishes; see bus.h. LCM's errors go to
-// stderr, so what can be known before is asked before: the URL's parts, the route.
+// Receives on its own socket and publishes through LCM's C interface; see bus.h. LCM prints errors
+// to stderr, so URL and route are checked before it is called.
 #include "engine/lcm/bus.h"
 
 #include <arpa/inet.h>
@@ -25,7 +25,7 @@
 namespace footfall::engine {
 namespace {
 
-constexpr int kMostAtOnce = 512;                  // messages of one poll()
+constexpr int kMostAtOnce = 512;                  // maximum number of messages of one poll()
 constexpr std::size_t kLargestDatagram = 65'536;  // bytes
 
 [[noreturn]] void refuse(const std::string& url, const std::string& why) {
@@ -86,13 +86,14 @@ class Socket {
   Socket& operator=(const Socket&) = delete;
   int fd() const { return fd_; }
 
-  // Of the system's tables: nothing is sent.
+  // Asks the system's routing tables only: nothing is sent.
   void check_route() const {
     const sockaddr_in to = socket_address(address_);
     if (::connect(fd_, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) fail();
   }
 
-  // Bound to the group, it hears no other one and nothing that is sent to this host alone.
+  // Bound to the group address, so that it receives neither other groups nor unicast packets to
+  // this host.
   void join() const {
     const sockaddr_in from = socket_address(address_);
     const int on = 1;
@@ -161,7 +162,7 @@ struct LcmBus::Impl {
     if (lcm != nullptr) lcm_destroy(lcm);
   }
 
-  // The next message that is there; false: none is.
+  // Handles the next waiting message; false if there is none.
   bool take() {
     sockaddr_in from{};
     socklen_t size = sizeof from;
@@ -215,7 +216,7 @@ int LcmBus::poll(int milliseconds) noexcept {
   for (bool more = true; more && handled < kMostAtOnce;) {
     try {
       more = impl_->take();
-    } catch (...) {  // of a handler, or no memory: that message is lost
+    } catch (...) {  // from a handler or an allocation: that message is lost
     }
     handled += more ? 1 : 0;
   }

@@ -1,5 +1,5 @@
-// The door to LCM: a multicast address to publish on and to hear, whose packets are handed over as
-// bytes. LCM publishes; what arrives is read here (see datagram.h for the reason). One thread a
+// The only use of LCM: publishes on and receives from a multicast address; packets are byte
+// sequences. LCM publishes; packets are received here (datagram.h gives the reason). One thread per
 // bus.
 #pragma once
 
@@ -14,41 +14,40 @@ namespace footfall::engine {
 inline constexpr const char* kLiveUrl = "udpm://239.255.76.67:7667?ttl=0";
 inline constexpr const char* kLivePrefix = "FOOTFALL";
 
-// Where packets go.
+// Destination of packets.
 struct LiveAddress {
   std::string group;  // 239.255.76.67
   int port = 7667;
-  int ttl = 0;                  // routers that may be passed, plus one; 0: packets stay on the host
-  int receive_bytes = 2 << 20;  // asked of the kernel, for what waits to be read
+  int ttl = 0;                  // routers that may be passed, plus one; 0: only this host
+  int receive_bytes = 2 << 20;  // requested size of the kernel's receive buffer
 };
 
-// `udpm://GROUP:PORT?ttl=N&recv_buf_size=BYTES`, all of it optional from the group on. Throws
+// `udpm://GROUP:PORT?ttl=N&recv_buf_size=BYTES`, all parts from the group on are optional. Throws
 // std::invalid_argument with one sentence.
 LiveAddress parse_live_url(const std::string& url);
-// The first part of the channels' names. Throws likewise.
+// Checks a prefix of channel names. Throws like parse_live_url().
 void check_live_prefix(const std::string& prefix);
 
 class LcmBus {
  public:
   using Handler = std::function<void(std::span<const std::uint8_t> packet)>;
 
-  // Throws what parse_live_url() throws, and std::runtime_error (no such network here, and what to
-  // do about it).
-  // Hears messages of more than one datagram (64 kB) if they have at most `largest` bytes.
+  // Throws like parse_live_url(), or std::runtime_error if the network is not available, with the
+  // remedy. Messages of more than one datagram (64 kB) are received up to `largest` bytes.
   explicit LcmBus(const std::string& url, std::size_t largest = 0);
   ~LcmBus();
   LcmBus(const LcmBus&) = delete;
   LcmBus& operator=(const LcmBus&) = delete;
 
-  // The handler is called in poll(); what it throws is dropped.
+  // Sets the handler called in poll(); its exceptions are ignored.
   void subscribe(const std::string& channel, Handler handler);
-  // False: it could not be sent.
+  // False if sending failed.
   bool publish(const std::string& channel, std::span<const std::uint8_t> packet) noexcept;
-  // Hands over what is there; waits at most `milliseconds` for the first. Returns how many.
+  // Handles waiting messages; waits at most `milliseconds` for the first one. Returns their number.
   int poll(int milliseconds) noexcept;
-  // Readable when there is something for poll().
+  // Readable when poll() has messages to handle.
   int file_descriptor() const noexcept;
-  // Datagrams that were no LCM messages.
+  // Number of malformed datagrams.
   std::int64_t strange() const noexcept;
 
  private:

@@ -26,10 +26,10 @@ namespace {
 using namespace footfall_lcm;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMost = 4096;          // answers and telemetry that wait to be taken
-constexpr std::size_t kLargest = 4'000'000;  // bytes of a message
-constexpr double kHelloApart = 0.3;          // s
-constexpr double kSilent = 1.5;  // s without a word, after which another session is believed
+constexpr std::size_t kMost = 4096;          // limit of stored answers and of stored telemetry
+constexpr std::size_t kLargest = 4'000'000;  // bytes, limit of a message
+constexpr double kHelloApart = 0.3;          // s between hello messages
+constexpr double kSilent = 1.5;              // s of silence after which another session is accepted
 
 double seconds_since(Clock::time_point then) {
   return std::chrono::duration<double>(Clock::now() - then).count();
@@ -43,7 +43,7 @@ std::string user_at_host() {
   return core::on_one_line(name + "@" + host.data());
 }
 
-// Whether what the catalogue tells of places fits itself: they are used as indices.
+// Whether the indices and sizes in the catalogue are consistent: they are used as indices.
 bool fits(const catalogue_t& catalogue) {
   return std::ranges::all_of(catalogue.parameters, [&](const parameter_t& p) {
     return p.first >= 0 && p.size >= 1 && p.first <= catalogue.value_count - p.size;
@@ -111,7 +111,7 @@ struct LiveClient::Impl {
     });
   }
 
-  // For why_not() alone: of an engine that is not believed.
+  // Remembers an engine with another key, only for why_not().
   void look_at_stranger(std::span<const std::uint8_t> packet) {
     catalogue_t other;
     if (decode(packet, nullptr, other) == PacketProblem::none) {
@@ -119,7 +119,7 @@ struct LiveClient::Impl {
     }
   }
 
-  // --- What arrives. ---
+  // --- Receiving. ---
   void take_catalogue(const catalogue_t& message) {
     if (settings.key.has_value() != static_cast<bool>(message.keyed)) {
       stranger = message.keyed ? Stranger::wants_key : Stranger::open;
@@ -127,7 +127,7 @@ struct LiveClient::Impl {
       return;
     }
     const bool other = message.session != catalogue.session;
-    // A second engine, or an old packet, does not take the place of one that is there.
+    // A second engine or an old packet must not replace the current engine.
     const bool late = !other && message.generation < catalogue.generation;
     if (message.session == 0 || !fits(message) || late ||
         (other && connected() && seconds_since(heard_at) < kSilent)) {
@@ -184,7 +184,8 @@ struct LiveClient::Impl {
     keep(answers, message);
   }
 
-  // Of the session and generation of the catalogue; if not, that is asked for.
+  // Whether a message belongs to the session and generation of the catalogue; if not, the catalogue
+  // is requested.
   template <class Message>
   bool of_now(const Message& message) {
     const bool now = catalogue.session != 0 && message.session == catalogue.session &&
@@ -203,7 +204,7 @@ struct LiveClient::Impl {
     list.push_back(message);
   }
 
-  // The engine that was asked is gone.
+  // The engine of pending requests is gone.
   void give_up_waiting() {
     for (const auto& [sequence, sent] : unanswered) {
       answer_t answer{};
@@ -220,7 +221,7 @@ struct LiveClient::Impl {
     unanswered.clear();
   }
 
-  // --- What is sent. ---
+  // --- Sending. ---
   void send_due() {
     if ((hello_wanted || !connected()) && seconds_since(hello_at) >= kHelloApart) {
       hello_wanted = false;
@@ -259,7 +260,7 @@ struct LiveClient::Impl {
   values_t values{};
   telemetry_t telemetry{};
   bool values_here = false, hello_wanted = true;
-  std::map<std::int64_t, Sent> unanswered;  // by sequence
+  std::map<std::int64_t, Sent> unanswered;  // requests by sequence
   std::vector<answer_t> answers;
   std::vector<telemetry_t> all_telemetry;
   std::set<std::pair<std::int64_t, std::int64_t>> known;  // answers, by client and sequence

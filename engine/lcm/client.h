@@ -1,5 +1,6 @@
-// A client of live tuning: asks an engine for its catalogue, sends edits until they are answered,
-// and hears values, telemetry and everybody's answers. One thread; everything happens in poll().
+// A client of live tuning: requests an engine's catalogue, repeats edits until they are answered,
+// and receives values, telemetry and the answers to all clients. One thread; everything happens in
+// poll().
 #pragma once
 
 #include <cstdint>
@@ -20,65 +21,66 @@ namespace footfall::engine {
 
 struct LiveClientSettings {
   std::string url;                  // empty: kLiveUrl of bus.h
-  std::string prefix = "FOOTFALL";  // of the channels
-  std::optional<LiveKey> key;       // none: only an engine that runs with --lcm-open is heard
-  std::string who;                  // for people and the log; empty: USER@HOST
-  double retry = 0.1;               // s without an answer until a request is sent again
+  std::string prefix = "FOOTFALL";  // prefix of the channel names
+  std::optional<LiveKey> key;       // none: only engines that run with --lcm-open are accepted
+  std::string who;                  // name shown to other users and in the log; empty: USER@HOST
+  double retry = 0.1;               // s without an answer until a request is repeated
 };
 
 class LiveClient {
  public:
-  // Throws std::invalid_argument with one sentence (a URL or prefix that cannot be), or
-  // std::runtime_error (no network for it, and what to do).
+  // Throws std::invalid_argument with one sentence (invalid URL or prefix), or std::runtime_error
+  // (network not available, with the remedy).
   explicit LiveClient(const LiveClientSettings& settings);
   ~LiveClient();
   LiveClient(const LiveClient&) = delete;
   LiveClient& operator=(const LiveClient&) = delete;
 
-  // Asks until catalogue and values are here, at most `timeout` seconds; false: they are not, and
-  // why_not() says why.
+  // Waits at most `timeout` seconds for catalogue and values; false if they did not arrive,
+  // why_not() gives the reason.
   bool connect(double timeout);
   bool connected() const;
-  // For people, when connect() fails or an engine falls silent: nobody answers, another key, ...
+  // Reason for a failed connect() or a silent engine, as text: no answer, another key, ...
   std::string why_not() const;
-  // Seconds since the engine was heard last.
+  // Seconds since the last message from the engine.
   double silence() const;
 
-  // Takes what arrives and sends again what is not answered; waits at most `seconds` for the first
-  // arrival. Returns how many messages came.
+  // Handles arriving messages and repeats unanswered requests; waits at most `seconds` for the
+  // first message. Returns the number of messages.
   int poll(double seconds);
-  // Readable when there is something to poll().
+  // Readable when poll() has messages to handle.
   int file_descriptor() const;
 
-  // The newest of each; empty messages before connected(). Changes only within poll(). Another
-  // session or generation of the catalogue (a new run, a reload) may bring other parameters.
+  // The newest message of each type; empty before connected(). They change only within poll().
+  // Another session or generation of the catalogue (a new run, a reload) may have other parameters.
   const footfall_lcm::catalogue_t& catalogue() const;
   const footfall_lcm::values_t& values() const;
-  // tick < 0: none yet.
+  // tick < 0 before the first message.
   const footfall_lcm::telemetry_t& telemetry() const;
 
-  // Index of a parameter, state or signal in the catalogue; -1: no such name.
+  // Index of a parameter, state or signal in the catalogue; -1 if absent.
   int find_parameter(std::string_view name) const;
   int find_signal(std::string_view name) const;
 
-  // Sends a request: what, over, revision, changes, events are the caller's; session, client, who,
-  // mac and, if it is 0, sequence are filled in. Returns the sequence; the answer comes with
-  // take_answers(). Needs connected().
+  // Sends a request. The caller fills what, over, revision, changes, events; session, client, who,
+  // mac and, if it is 0, sequence are filled here. Returns the sequence; the answer is returned by
+  // take_answers(). Requires connected().
   std::int64_t send(footfall_lcm::request_t request);
-  // Sends and waits; none: no answer within `timeout` seconds (it will not be sent again: whether
-  // it was applied is not known). Everybody's answers remain for take_answers().
+  // Sends a request and waits; nullopt without answer in `timeout` seconds (it is not repeated
+  // afterwards: whether it was applied is unknown). Answers to all clients remain available to
+  // take_answers().
   std::optional<footfall_lcm::answer_t> ask(const footfall_lcm::request_t& request, double timeout);
-  // Requests of this client that wait for their answers.
+  // Number of this client's unanswered requests.
   std::size_t waiting() const;
 
-  // What arrived since the last call, in order: answers to everybody (repeated ones once), and
-  // telemetry (of both the newest 4096).
+  // Messages since the last call, in order: answers to all clients (repetitions only once), and
+  // telemetry (at most the newest 4096 of each).
   std::vector<footfall_lcm::answer_t> take_answers();
   std::vector<footfall_lcm::telemetry_t> take_telemetry();
-  std::int64_t client() const;  // this one's number, in answers and requests
+  std::int64_t client() const;  // this client's number in answers and requests
   const std::string& who() const;
 
-  // Messages that were refused: malformed, not of the key, of another session.
+  // Number of rejected messages: malformed, another key, another session.
   std::int64_t rejected() const;
 
  private:

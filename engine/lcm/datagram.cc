@@ -1,8 +1,8 @@
-// Datagrams as LCM sends them, numbers big-endian; see datagram.h.
-//   whole message: LC02, number, channel and a zero, content
-//   part of one:   LC03, number, size of the whole content, where this part begins in it, number of
-//                  the part, how many there are (2 bytes each), in the first part the channel and a
-//                  zero, content
+// LCM datagrams, numbers big-endian; see datagram.h.
+//   complete message: LC02, number, channel and a zero, content
+//   fragment:         LC03, number, size of the complete content, offset of this fragment in it,
+//                     number of the fragment, number of fragments (2 bytes each), in the first
+//                     fragment the channel and a zero, content
 #include "engine/lcm/datagram.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::uint32_t number(std::span<const std::uint8_t> bytes, std::size_t at, std::s
   return value;
 }
 
-// The channel's name before its zero, taken off; none: it is not there.
+// Removes the zero-terminated channel name from the front; nullopt if malformed.
 std::optional<std::string_view> take_channel(std::span<const std::uint8_t>& rest) {
   const auto longest = rest.first(std::min(rest.size(), kLongestChannel + 1));
   const auto end = std::find(longest.begin(), longest.end(), 0);

@@ -1,6 +1,6 @@
-// LCM's messages out of the datagrams that carry them, as anybody may have sent them. LCM's own
-// reader (1.3.1) ends the process at some that are damaged, which must not happen beside a robot.
-// Source: LCM documentation, "UDP Multicast Protocol".
+// Assembles LCM messages from untrusted datagrams. LCM's own reader (1.3.1) terminates the process
+// for some malformed ones, which must not happen beside a robot. Source: LCM documentation, "UDP
+// Multicast Protocol".
 #pragma once
 
 #include <array>
@@ -21,14 +21,15 @@ struct LcmMessage {
 
 class LcmReader {
  public:
-  // Of messages that come in several datagrams, those with at most so many bytes are put together;
-  // 0: none. What is kept of them is no more than has arrived.
+  // Messages of several datagrams are assembled up to `largest` bytes; 0: never. Memory grows only
+  // with the data received.
   explicit LcmReader(std::size_t largest) : largest_(largest) {}
 
-  // A message if the datagram completes one; valid until the next call. Parts count as they come:
-  // in order, from one sender (a number that tells them apart), of one message at a time.
+  // The message completed by this datagram, if any; valid until the next call. Fragments are
+  // accepted only in order, from one sender (a number that identifies it), for one message at a
+  // time.
   std::optional<LcmMessage> take(std::uint64_t sender, std::span<const std::uint8_t> datagram);
-  // Datagrams that are no part of an LCM message, or of one that is not put together.
+  // Number of datagrams that are malformed or belong to an unassembled message.
   std::int64_t strange() const noexcept { return strange_; }
 
  private:
@@ -43,7 +44,7 @@ class LcmReader {
   Parts* parts_of(std::uint64_t sender);
 
   std::size_t largest_;
-  std::array<Parts, 8> parts_;  // of as many senders
+  std::array<Parts, 8> parts_;  // for several concurrent senders
   std::size_t oldest_ = 0;
   std::int64_t strange_ = 0;
 };

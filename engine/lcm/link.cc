@@ -26,10 +26,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr std::size_t kEntrance = 1;  // of the door
-// How often at most, and values at least.
+constexpr std::size_t kEntrance = 1;  // the link's entrance of the edit door
+// Minimum intervals of messages, and the maximum interval of values.
 constexpr milliseconds kCatalogueApart{100}, kValuesApart{20}, kMovingApart{100}, kValuesPause{500};
-// Of waiting for packets: while an edit is on its way through the tick, else.
+// Waiting time for packets: while an edit is waiting for the tick, and otherwise.
 constexpr int kBusyWait = 1, kIdleWait = 5;  // ms
 
 std::int64_t random_number() {
@@ -109,7 +109,7 @@ struct LcmLink::Impl {
     footfall_lcm::catalogue_t catalogue;
     server.fill_catalogue(catalogue);
     publish("CATALOGUE", std::move(catalogue));
-    values_wanted = true;  // who asks for one needs both
+    values_wanted = true;  // a client that asks for the catalogue needs the values, too
   }
 
   void publish_telemetry(const LiveSnapshot& snapshot) {
@@ -138,7 +138,7 @@ struct LcmLink::Impl {
     told_moving = snapshot.now != snapshot.target;
   }
 
-  // Telemetry of all that the tick left, the values of the newest if they are due.
+  // Publishes telemetry of all snapshots, and the newest values if they are due.
   void take_snapshots(Clock::time_point now) {
     while (const LiveSnapshot* snapshot = binding->feed.front()) {
       if (snapshot->telemetry) publish_telemetry(*snapshot);
@@ -187,7 +187,7 @@ struct LcmLink::Impl {
     });
   }
 
-  // Out of memory, say: what was at hand is lost, the next packet is not.
+  // After an exception (such as out of memory) the current item is lost, the next one is handled.
   template <class Step>
   static void guarded(Step&& step) noexcept {
     try {
@@ -198,20 +198,20 @@ struct LcmLink::Impl {
 
   const LinkSettings settings;
   std::shared_ptr<LinkBinding> binding;
-  LinkBinding* posting;  // of the tick's thread
+  LinkBinding* posting;  // used by the tick's thread
   LiveServer server;
   LcmBus bus;
   LiveServer::Answers answers;
-  footfall_lcm::telemetry_t telemetry;  // kept for the room that it has
+  footfall_lcm::telemetry_t telemetry;  // reused to keep its memory
   LinkCounters counters;
-  std::int64_t dropped_before = 0;  // by the feeds of loops that were replaced
+  std::int64_t dropped_before = 0;  // snapshots dropped by the feeds of replaced loops
   bool catalogue_wanted = true, values_wanted = true, told_moving = false;
   Clock::time_point catalogue_at, values_at;
 
   // --- Between the threads. ---
   std::shared_ptr<LinkBinding> next;  // of the tick's thread until `rebinding`, then of the link's
   std::atomic<bool> rebinding{false}, stopping{false};
-  mutable std::mutex told_mutex;  // never taken by the tick
+  mutable std::mutex told_mutex;  // never locked by the tick
   LinkCounters told;
   std::thread thread;
 };

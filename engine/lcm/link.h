@@ -1,7 +1,7 @@
-// An engine on the network of live tuning: a thread that hears requests, hands them to the live
-// server, publishes answers, values, catalogue and telemetry. The tick only leaves copies for it.
-// Nothing that arrives can end the thread or the process; what is refused is counted. What an
-// engine hears is in one datagram each.
+// Connects an engine to the network of live tuning: a thread receives requests, passes them to the
+// live server, and publishes answers, values, catalogue and telemetry. The tick only provides
+// copies. No packet can end the thread or the process; rejected ones are counted. Packets to the
+// engine must fit in one datagram.
 #pragma once
 
 #include <array>
@@ -22,50 +22,51 @@ class ControlLoop;
 struct LinkSettings {
   std::string url = kLiveUrl;
   std::string prefix = kLivePrefix;
-  std::optional<LiveKey> key;  // none: everybody's requests are believed
+  std::optional<LiveKey> key;  // none: requests of all clients are accepted
   double telemetry = 50.0;     // messages per second of the run; 0: none
 };
 
 struct LinkCounters {
   LiveCounters requests;
-  std::int64_t heard_hello = 0, heard_request = 0;  // packets on each channel, good or bad
+  std::int64_t heard_hello = 0, heard_request = 0;  // packets on each channel, valid or not
   std::int64_t hellos = 0;
   std::array<std::int64_t, static_cast<std::size_t>(PacketProblem::count)> rejected{};
-  std::int64_t strange = 0;    // datagrams that were no LCM messages
+  std::int64_t strange = 0;    // malformed datagrams
   std::int64_t telemetry = 0;  // messages sent
-  std::int64_t dropped = 0;    // and that found no room
+  std::int64_t dropped = 0;    // messages dropped because of a full queue
 
   std::int64_t rejected_in_all() const noexcept;
 };
 
-// What the link needs of one loop.
+// The link's data for one loop.
 struct LinkBinding;
 
 class LcmLink {
  public:
-  // Opens the network. Throws std::invalid_argument (URL or prefix) or std::runtime_error (no such
-  // network here), each with one sentence.
+  // Opens the network. Throws std::invalid_argument (URL or prefix) or std::runtime_error (network
+  // not available), each with one sentence.
   LcmLink(ControlLoop& loop, const LinkSettings& settings);
   ~LcmLink();
   LcmLink(const LcmLink&) = delete;
   LcmLink& operator=(const LcmLink&) = delete;
 
-  // After ControlLoop::start(): begins to answer.
+  // Starts answering; call after ControlLoop::start().
   void start();
-  // The tick's thread, after each compute(); tick_ns: what it took. No lock, no allocation.
+  // Called by the tick's thread after each compute(); tick_ns: its duration. No lock, no
+  // allocation.
   void post(const ControlLoop& loop, std::int64_t tick_ns) noexcept;
-  // After the last tick: tells it, refuses what still waits, ends the thread.
+  // Call after the last tick: publishes it, refuses waiting requests, ends the thread.
   void stop() noexcept;
 
-  // Reload. Room for what another loop will post; any thread.
+  // Reload: allocates data for another loop; any thread.
   std::shared_ptr<LinkBinding> prepare(ControlLoop& loop) const;
-  // The tick's thread, between two ticks: from now on post() is of the loop that `binding` was
-  // prepared for. The loop before must live, unused, until rebound(); only then comes the next. No
-  // lock, no allocation.
+  // Called by the tick's thread between two ticks: post() now belongs to the loop for which
+  // `binding` was prepared. The previous loop must exist, unused, until rebound(); only then the
+  // next rebind is allowed. No lock, no allocation.
   void rebind(std::shared_ptr<LinkBinding> binding) noexcept;
   bool rebound() const noexcept;
 
-  // What came so far; exact after stop().
+  // Current counters; exact after stop().
   LinkCounters counters() const;
 
  private:

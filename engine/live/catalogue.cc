@@ -1,4 +1,5 @@
-// The catalogue of what can be changed and of the names of what is told; see server.h.
+// The catalogue of a run: everything that can be changed, and names of reported quantities; see
+// server.h.
 #include "engine/live/catalogue.h"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The catalogue of what can be changed, and of the names of what is told.
+// The catalogue of a run: everything that can be changed, and names of reported quantities.
 #pragma once
 
 #include "behaviors/compiled/behavior.h"
@@ -11,7 +11,7 @@ namespace footfall::engine {
 
 struct LiveNames;
 
-// All that the behavior says; session, revision and the like are left to the server.
+// Fills everything that depends on the behavior; session, revision etc. are filled by the server.
 void fill_names(const behaviors::Behavior& behavior, const LiveNames& names,
                 footfall_lcm::catalogue_t& catalogue);
 

@@ -1,4 +1,4 @@
-// Windows of sequence numbers; see clients.h.
+// Windows of sequence numbers per client; see clients.h.
 #include "engine/live/clients.h"
 
 #include <algorithm>
@@ -33,13 +33,13 @@ void LiveClients::keep(const footfall_lcm::answer_t& answer) {
   const auto client = clients_.find(answer.client);
   if (client == clients_.end()) return;
   const auto seen = client->second.seen.find(answer.sequence);
-  if (seen == client->second.seen.end()) return;  // it left the window before it was answered
+  if (seen == client->second.seen.end()) return;  // left the window before the answer
   seen->second = answer;
   kept_.emplace_back(answer.client, answer.sequence);
   while (kept_.size() > most_answers_) {
     const auto [oldest, sequence] = kept_.front();
     kept_.pop_front();
-    // One that left its window is here still; all before it are gone then anyway.
+    // If it has left its window but is stored here, all earlier ones have left, too.
     clients_.at(oldest).forget_to(sequence);
   }
 }

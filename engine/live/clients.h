@@ -1,5 +1,5 @@
-// Which requests of whom have been seen, and what they were answered: a request is done once,
-// however often it arrives, and never again when it is long past. Bounded in memory.
+// Remembers the requests of every client and their answers: a request is executed at most once,
+// however often it arrives, and never if it is outdated. Bounded memory.
 #pragma once
 
 #include <cstddef>
@@ -15,30 +15,31 @@ namespace footfall::engine {
 
 class LiveClients {
  public:
-  static constexpr std::int64_t kWindow = 256;  // newest sequence numbers of a client
+  static constexpr std::int64_t kWindow = 256;  // newest sequence numbers kept per client
 
-  // `most_clients` of a run; the answers of all of them that are kept, beyond which the oldest go.
+  // Limits of the number of clients in a run and of stored answers of all clients; the oldest
+  // answers are dropped.
   explicit LiveClients(std::size_t most_clients = 65536, std::size_t most_answers = 16384)
       : most_clients_(most_clients), most_answers_(most_answers) {}
 
   enum class Verdict {
-    fresh,     // never seen; from now on it is pending
-    pending,   // seen, not answered yet
+    fresh,     // new; pending from now on
+    pending,   // seen, not yet answered
     answered,  // see answer()
     too_old,   // before the window
-    too_many,  // clients
+    too_many,  // limit of clients reached
   };
-  // sequence >= 1.
+  // Classifies a request; sequence >= 1.
   Verdict look(std::int64_t client, std::int64_t sequence);
-  // Of the last request that look() found answered.
+  // The answer to the last request for which look() returned `answered`.
   const footfall_lcm::answer_t& answer() const { return *found_; }
-  // The answer to one that was fresh.
+  // Stores the answer to a pending request.
   void keep(const footfall_lcm::answer_t& answer);
 
  private:
   struct Client {
-    std::int64_t highest = 0;  // sequence seen
-    std::int64_t floor = 0;    // this and those below are too old
+    std::int64_t highest = 0;  // highest sequence seen
+    std::int64_t floor = 0;    // this and lower ones are too old
     std::map<std::int64_t, std::optional<footfall_lcm::answer_t>> seen;
     void forget_to(std::int64_t sequence);
   };

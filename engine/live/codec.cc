@@ -1,5 +1,5 @@
-// A look at a packet before the generated code reads it; see codec.h. That code believes
-// counts and lengths: it would make room for 2^31 entries that a packet of 60 bytes announces.
+// Validates a packet before the generated code decodes it; see codec.h. The generated code trusts
+// counts and lengths: it would allocate 2^31 entries announced by a packet of 60 bytes.
 #include "engine/live/codec.h"
 
 #include <sodium.h>
@@ -22,17 +22,17 @@ using namespace footfall_lcm;
 
 constexpr std::size_t kMacBytes = 32;
 constexpr std::size_t kFingerprintBytes = 8;
-constexpr std::int32_t kLongestName = 128;  // bytes, of what a client may send
+constexpr std::int32_t kLongestName = 128;  // bytes, for names sent by clients
 static_assert(kMacBytes == crypto_auth_BYTES && std::tuple_size_v<LiveKey> == crypto_auth_KEYBYTES);
 
-// How the bytes behind the fingerprint follow each other, as in the type's .lcm file:
+// The byte layout behind the fingerprint, as in the type's .lcm file:
 //   1 4 8    a number of so many bytes
 //   s n      a text; a name
-//   c {...}  a count; what comes so many times (several groups may share a count)
+//   c {...}  a count, and the group that is repeated so many times (groups may share a count)
 //   m        the mac
 struct Layout {
   std::string_view fields;
-  std::size_t largest = 0;  // packet, bytes
+  std::size_t largest = 0;  // maximum packet size, bytes
 };
 constexpr Layout layout_of(const hello_t&) { return {"8", 64}; }
 constexpr Layout layout_of(const request_t&) { return {"8881n88c{n4c{8}}c{n}m", 60'000}; }
@@ -54,7 +54,7 @@ class Walk {
 
   bool at_end() const { return rest_.empty(); }
 
-  // False: the bytes do not fit the layout.
+  // False if the bytes do not match the layout.
   bool follow(std::string_view fields) {
     std::int32_t count = 0;
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -75,7 +75,7 @@ class Walk {
         case '{': {
           const std::size_t end = end_of_group(fields, i);
           const std::string_view group = fields.substr(i + 1, end - i - 1);
-          // No group is of no bytes, so a count that lies ends where the packet does.
+          // Every group has at least one byte, so a false count ends at the end of the packet.
           for (std::int32_t k = 0; good && k < count; ++k) good = follow(group);
           i = end;
           break;
@@ -112,7 +112,7 @@ class Walk {
     return skip(4);
   }
 
-  // Its length counts the zero at its end.
+  // Its length includes the terminating zero.
   bool text(std::int32_t longest) {
     std::int32_t length = 0;
     if (!number(length) || length < 1 || length - 1 > longest) return false;
@@ -132,14 +132,14 @@ bool has_fingerprint(std::span<const std::uint8_t> packet, std::int64_t fingerpr
   return bits == static_cast<std::uint64_t>(fingerprint);
 }
 
-// In constant time.
+// Compares in constant time.
 bool authentic(std::span<const std::uint8_t> packet, const LiveKey& key) {
   if (packet.size() < kFingerprintBytes + kMacBytes) return false;
   const std::size_t size = packet.size() - kMacBytes;
   return crypto_auth_verify(packet.data() + size, packet.data(), size, key.data()) == 0;
 }
 
-// Counts as the lists are long; lists that share one are of one length.
+// Counts are taken from the lists; lists that share a count must have equal length.
 std::int32_t count_of(std::size_t size) { return static_cast<std::int32_t>(size); }
 void settle(hello_t&) {}
 void settle(request_t& m) {
@@ -193,11 +193,11 @@ PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
   Walk walk(packet.subspan(kFingerprintBytes));
   if (!walk.follow(layout.fields) || !walk.at_end()) return PacketProblem::malformed;
   try {
-    Message read{};  // a new one: the generated code leaves lists of no entries as they were
+    Message read{};  // new: the generated code does not clear lists without entries
     const int size = static_cast<int>(packet.size());
     if (read.decode(packet.data(), 0, size) != size) return PacketProblem::malformed;
     message = std::move(read);
-  } catch (...) {  // no memory for it
+  } catch (...) {  // out of memory
     return PacketProblem::malformed;
   }
   return PacketProblem::none;

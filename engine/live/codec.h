@@ -1,5 +1,5 @@
-// Messages of live tuning (engine/lcm) to packets and back. Who sends a packet may mean harm:
-// nothing of it is believed, or made room for, before all of it was looked at.
+// Encodes and decodes the messages of live tuning (engine/lcm). Packets are untrusted: a packet is
+// validated completely before anything is decoded or allocated.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace footfall::engine {
 
-// What speaks against a packet.
+// Reasons to reject a packet.
 enum class PacketProblem : std::uint8_t {
   none,
   too_large,      // for a message of its type
-  wrong_type,     // the fingerprint is of something else
-  not_authentic,  // signed by another key, or not at all
-  malformed,      // counts, lengths, texts or its own length do not fit
+  wrong_type,     // another fingerprint
+  not_authentic,  // signed with another key, or unsigned
+  malformed,      // invalid counts, lengths, texts or packet size
   count,
 };
 const char* packet_problem_name(PacketProblem problem);
@@ -25,21 +25,21 @@ using PacketBytes = std::vector<std::uint8_t>;
 
 // Both are there for hello_t, request_t, answer_t, catalogue_t, values_t, telemetry_t.
 
-// With a key, what has a `mac` must be signed by it; that is checked before anything else is read.
-// The message is written only if the packet is well formed: texts are UTF-8 without control
-// characters, counts and lengths within the packet, no byte left over. Numbers may be anything,
-// also not finite. Needs at most a small multiple of the packet's size.
+// Decodes a packet. With a key, a message type with a `mac` must be signed with it; that is checked
+// first. The message is written only if the packet is well formed: texts are UTF-8 without control
+// characters, counts and lengths are within the packet, no byte is left over. Numbers are not
+// checked, they may be non-finite. Memory is bounded by a small multiple of the packet's size.
 template <class Message>
 PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
                      Message& message) noexcept;
 
-// Counts are taken from the lengths of the lists. With a key, what has a `mac` is signed by it
-// (crypto_auth over all bytes before), else its `mac` is zero.
+// Encodes a message. Counts are taken from the lengths of the lists. With a key, a `mac` is
+// computed (crypto_auth over all bytes before it), otherwise it is zero.
 template <class Message>
 PacketBytes encode(Message message, const LiveKey* key);
 
-// An encoded message whose last 32 bytes are replaced by the `mac` of the others; shorter ones stay
-// as they are.
+// Replaces the last 32 bytes of an encoded message by the `mac` of the others; shorter packets are
+// unchanged.
 PacketBytes seal(PacketBytes packet, const LiveKey& key);
 
 }  // namespace footfall::engine

@@ -1,4 +1,4 @@
-// Two stacks; see history.h.
+// Undo and redo stacks; see history.h.
 #include "engine/live/history.h"
 
 #include <utility>

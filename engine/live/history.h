@@ -1,4 +1,4 @@
-// What can be undone and done again: the applied changes of a run, whoever made them.
+// Undo history: the applied changes of a run by all users.
 #pragma once
 
 #include <deque>
@@ -8,16 +8,16 @@
 
 namespace footfall::engine {
 
-// A change of values: where each was (or was going), and where it was sent.
+// A change of values: previous values (or ramp targets) and new ones.
 struct LiveChange {
   std::vector<EditValue> before, after;
 };
 
 class LiveHistory {
  public:
-  static constexpr std::size_t kMost = 1000;  // older changes stay
+  static constexpr std::size_t kMost = 1000;  // older changes cannot be undone
 
-  // The newest change that is not undone, the newest that is; nullptr: none.
+  // The newest change to be undone or redone; nullptr if none.
   const LiveChange* undoable() const noexcept { return done_.empty() ? nullptr : &done_.back(); }
   const LiveChange* redoable() const noexcept {
     return undone_.empty() ? nullptr : &undone_.back();
@@ -25,7 +25,7 @@ class LiveHistory {
   std::size_t undo_count() const noexcept { return done_.size(); }
   std::size_t redo_count() const noexcept { return undone_.size(); }
 
-  // What was applied: something new (what was undone is out of reach then), an undo, a redo.
+  // Records an applied change: a new one (which clears the redo stack), an undo, or a redo.
   void changed(LiveChange change);
   void undid();
   void redid();

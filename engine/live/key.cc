@@ -47,8 +47,8 @@ void make_folders(const std::string& path) {
   }
 }
 
-// False: there is a file of that name already. Written under another name and linked to its own,
-// which never replaces one: nobody sees half a key, and of several writers one wins.
+// False if the file exists already. Written under a temporary name and hard-linked to its own,
+// which never replaces a file: no reader sees half a key, and of several writers one wins.
 bool write_new_key(const std::string& path) {
   if (sodium_init() < 0) fail(path, "this machine gives no random numbers");
   LiveKey key;

@@ -1,4 +1,4 @@
-// Names to indices, and changes to texts; see request.h.
+// Resolves names in requests, and describes changes as text; see request.h.
 #include "engine/live/request.h"
 
 #include <fmt/format.h>
@@ -18,11 +18,11 @@ namespace {
 using behaviors::Behavior;
 using behaviors::ParameterInfo;
 
-constexpr std::size_t kMaxName = 96;       // bytes of a name in a text
-constexpr std::size_t kMaxReasons = 32;    // of an answer
+constexpr std::size_t kMaxName = 96;       // bytes, for a name in a text
+constexpr std::size_t kMaxReasons = 32;    // in one answer
 constexpr std::size_t kMaxReason = 240;    // bytes
-constexpr std::size_t kMaxMentioned = 16;  // changes in a text
-constexpr std::size_t kFewChanges = 32;    // are looked at in any case
+constexpr std::size_t kMaxMentioned = 16;  // in one text
+constexpr std::size_t kFewChanges = 32;    // always evaluated
 
 std::string unknown(const char* what, const std::string& name,
                     const std::vector<std::string>& known) {
@@ -31,7 +31,7 @@ std::string unknown(const char* what, const std::string& name,
 }
 
 std::string number_with_unit(double value, core::Dimension dimension) {
-  // Times are told as people write them.
+  // Short times are displayed in ms.
   if (dimension == core::kTime && std::abs(value) < 1.0) return fmt::format("{:g} ms", 1e3 * value);
   const std::string unit = core::unit_text(dimension);
   return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit);
@@ -74,7 +74,7 @@ EditBatch read_edit(const Behavior& behavior, const LiveNames& names,
                     const footfall_lcm::request_t& request, std::vector<std::string>& reasons) {
   EditBatch batch;
   batch.over = request.over;
-  // No value may be given twice: more changes than values are wrong in any case.
+  // No value may be given twice, so more changes than values are always an error.
   if (const std::size_t most = std::max(names.value_count, kFewChanges);
       request.changes.size() > most) {
     reasons.push_back(
@@ -86,7 +86,7 @@ EditBatch read_edit(const Behavior& behavior, const LiveNames& names,
         reasons.push_back(unknown("parameter", change.name, names.parameter_names));
         continue;
       }
-      // `goal.y` is that component; `goal.y` and a component of it would be one too many.
+      // `goal.y` already names a component; a component of it is an error.
       const bool twice = part.component >= 0 && change.component >= 0;
       if (twice) reasons.push_back(core::printable(change.name, kMaxName) + ": is one value");
       const int component = part.component >= 0 ? part.component : change.component;

@@ -1,4 +1,4 @@
-// Between the words of a request and the numbers of a behavior.
+// Converts requests (with names) to edits of a behavior (with indices).
 #pragma once
 
 #include <span>
@@ -13,25 +13,25 @@ class request_t;
 
 namespace footfall::engine {
 
-// What of a behavior can be asked for.
+// The items of a behavior that requests may name.
 struct LiveNames {
   explicit LiveNames(const behaviors::Behavior& behavior);
 
   std::vector<int> parameters;  // live ones, into Behavior::parameters
-  std::vector<int> events;      // that may come from outside, into Behavior::events
+  std::vector<int> events;      // events allowed from outside, into Behavior::events
   std::vector<std::string> parameter_names, event_names;
-  std::size_t value_count = 0;  // of all live parameters
+  std::size_t value_count = 0;  // number of values of all live parameters
 };
 
-// The batch that an EDIT asks for. What has no number in the behavior is left out, with a text for
-// people in `reasons`; all else is for reasons_against() to judge.
+// The batch requested by an EDIT. Unknown names are omitted and reported as text in `reasons`; all
+// other checks are made by reasons_against().
 EditBatch read_edit(const behaviors::Behavior& behavior, const LiveNames& names,
                     const footfall_lcm::request_t& request, std::vector<std::string>& reasons);
 
 // `lift_time = 150 ms, goal.y = 0.5 m over 100 ms, raise go`; `ramp`: s, of the values.
 std::string change_text(const behaviors::Behavior& behavior, const EditBatch& batch, double ramp);
 
-// At most so many texts, none long, and how many are missing.
+// Limits the number and length of texts; the last one gives the number of omitted texts.
 std::vector<std::string> shortened(std::vector<std::string> reasons);
 
 }  // namespace footfall::engine

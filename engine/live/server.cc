@@ -1,4 +1,4 @@
-// Requests, the door and answers; see server.h.
+// Requests, the edit door and answers; see server.h.
 #include "engine/live/server.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ using behaviors::ParameterInfo;
 using footfall_lcm::answer_t;
 using footfall_lcm::request_t;
 
-constexpr std::size_t kMostWaiting = 64;  // requests behind an undo that waits for the tick
+constexpr std::size_t kMostWaiting = 64;  // requests queued behind an undo that waits for the tick
 
 template <typename T>
 auto count_of(const T& list) {
@@ -36,9 +36,9 @@ auto count_of(const T& list) {
 }  // namespace
 
 struct LiveServer::Impl {
-  // In the door, or on its way there.
+  // A request submitted, or to be submitted, to the door.
   struct Pending {
-    answer_t answer;  // as far as it is known
+    answer_t answer;  // as far as known
     std::int8_t what = request_t::EDIT;
     std::vector<EditValue> values;  // of an EDIT
   };
@@ -63,10 +63,10 @@ struct LiveServer::Impl {
   LiveNames names;
   LiveSettings settings;
   std::int64_t generation = 0;
-  std::int64_t base = 0;          // changes before this door
-  std::int64_t told = -1;         // revision of the last values
-  std::deque<Pending> pending;    // in the door, in its order
-  std::deque<request_t> waiting;  // for the door's answers
+  std::int64_t base = 0;          // changes before this door was bound
+  std::int64_t told = -1;         // revision of the last values sent
+  std::deque<Pending> pending;    // submitted to the door, in order
+  std::deque<request_t> waiting;  // queued until the door has answered
   std::vector<double> former;
   LiveHistory history;
   LiveClients clients;
@@ -108,7 +108,7 @@ void LiveServer::Impl::refuse(answer_t answer, std::vector<std::string> reasons,
   answers.push_back(std::move(answer));
 }
 
-// Whether it is answered already, or never will be done.
+// Whether the request was answered before, or must not be executed.
 bool LiveServer::Impl::is_known(const request_t& request, const answer_t& answer,
                                 Answers& answers) {
   const auto no = [&](std::string reason) {
@@ -177,7 +177,7 @@ void LiveServer::Impl::process(const request_t& request, Answers& answers) {
   EditBatch batch = batch_of(request, reasons);
   answer_t answer = blank_answer(request, settings.session);
   if (!reasons.empty()) {
-    // All that is wrong is told at once; that there is nothing in it follows from what is left out.
+    // Report all problems at once; an empty edit only follows from omitted names.
     if (!batch.values.empty() || !batch.events.empty()) {
       batch.revision.reset();
       for (std::string& reason : reasons_against(*behavior, batch, entrance->revision())) {
@@ -198,7 +198,7 @@ void LiveServer::Impl::process(const request_t& request, Answers& answers) {
 void LiveServer::Impl::remember(const Pending& done, std::span<const double> before) {
   if (done.what == request_t::UNDO) return history.undid();
   if (done.what == request_t::REDO) return history.redid();
-  if (done.values.empty()) return;  // it raised events
+  if (done.values.empty()) return;  // events only
   LiveChange change{done.values, done.values};
   std::size_t next = 0;
   for (EditValue& edit : change.before) {
@@ -248,7 +248,7 @@ void LiveServer::request(const request_t& request, Answers& answers) {
   ++m.counters.requests;
   const answer_t answer = blank_answer(request, m.settings.session);
   if (m.is_known(request, answer, answers)) return;
-  // What is newest is known when all that is in the door was applied, or refused.
+  // The newest change is known only after the door's pending edits were applied or refused.
   const bool waits =
       !m.waiting.empty() || (request.what != request_t::EDIT && m.entrance->outstanding() > 0);
   if (!waits) return m.process(request, answers);
@@ -316,7 +316,7 @@ void LiveServer::rebind(const Behavior& behavior, EditEntrance& entrance, const 
   m.behavior = &behavior;
   m.entrance = &entrance;
   m.names = LiveNames(behavior);
-  m.base = next - static_cast<std::int64_t>(entrance.revision());  // a reload's door counts on
+  m.base = next - static_cast<std::int64_t>(entrance.revision());  // the count continues
   m.history.clear();
   ++m.generation;
   for (const Impl::Pending& p : std::exchange(m.pending, {})) {

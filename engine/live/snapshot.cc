@@ -1,4 +1,4 @@
-// Copies in the tick, messages out of it; see snapshot.h.
+// Copies the state in the tick, and builds messages outside of it; see snapshot.h.
 #include "engine/live/snapshot.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ LiveSnapshot empty_snapshot(const behaviors::Behavior& behavior) {
   return snapshot;
 }
 
-// Names of the tasks in force, each once.
+// Names of the active tasks, each once.
 void copy_tasks(const ControlLoop& loop, LiveSnapshot& to) noexcept {
   const tasks::ControlSet& set = loop.machine().control().primary;
   to.task_count = 0;

@@ -1,5 +1,5 @@
-// What the tick hands to the link for telemetry: a copy of the moment in memory that is there
-// already, through a queue that neither side waits for.
+// Telemetry data passed from the tick to the link: copies in preallocated memory, through a queue
+// without waiting on either side.
 #pragma once
 
 #include <array>
@@ -25,17 +25,17 @@ class ControlLoop;
 enum class LoopState : std::uint8_t;
 
 struct LiveSnapshot {
-  bool telemetry = false;  // due; else it is for the values alone
+  bool telemetry = false;  // telemetry is due; otherwise only values
   std::int64_t tick = 0;
   double time = 0.0;  // s
   LoopState state{};
-  std::uint64_t revision = 0;  // of the door
+  std::uint64_t revision = 0;  // revision of the door
   std::int64_t tick_ns = 0, worst_ns = 0;
-  std::vector<double> now, target;  // parameters, by slot; where those go that ramp
+  std::vector<double> now, target;  // parameters by slot: current values and ramp targets
   std::vector<double> signals;
-  std::vector<int> active;  // atomic states; the first active_count count
+  std::vector<int> active;  // atomic states; only the first active_count are valid
   std::size_t active_count = 0;
-  std::vector<int> tasks;  // in force: into Behavior::task_names, ascending priority; likewise
+  std::vector<int> tasks;  // active ones, into Behavior::task_names, ascending priority; likewise
   std::size_t task_count = 0;
   core::FaultCounters faults;
 };
@@ -43,16 +43,16 @@ struct LiveSnapshot {
 // The queue of one loop.
 class LiveFeed {
  public:
-  // rate: of telemetry, per second of the run; 0: none.
+  // rate: telemetry messages per second of the run; 0: none.
   LiveFeed(const ControlLoop& loop, double rate);
 
-  // The tick's thread, after compute(): copies what is due (the values 50 times a second at least,
-  // and whatever the run's last tick is). tick_ns: what this tick took. No lock, no allocation; a
-  // full queue drops, and counts that.
+  // Called by the tick's thread after compute(): copies data that are due (values at least 50 times
+  // a second, and always at the run's last tick). tick_ns: duration of this tick. No lock, no
+  // allocation; if the queue is full the copy is dropped and counted.
   void post(const ControlLoop& loop, std::int64_t tick_ns) noexcept;
   std::int64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
-  // The link's thread: the oldest that waits (nullptr: none), and giving it back.
+  // Called by the link's thread: the oldest waiting snapshot (nullptr if none), and its release.
   const LiveSnapshot* front() noexcept;
   void pop() noexcept { ring_.release(1); }
 
@@ -63,7 +63,7 @@ class LiveFeed {
   std::atomic<std::int64_t> dropped_{0};
 };
 
-// All but session, generation, revision and dropped.
+// Fills everything except session, generation, revision and dropped.
 void fill_telemetry(const LiveSnapshot& snapshot, const behaviors::Behavior& behavior,
                     footfall_lcm::telemetry_t& message);
 

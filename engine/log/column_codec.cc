@@ -1,4 +1,4 @@
-// Columns to bytes and back; see column_codec.h.
+// Encodes and decodes columns; see column_codec.h.
 #include "engine/log/column_codec.h"
 
 #include <algorithm>
@@ -11,11 +11,12 @@
 namespace footfall::engine {
 namespace {
 
-// First byte of a column's head: order in the lowest bits, then the relation.
+// First byte of a column's header: order in the lowest bits, then the relation.
 constexpr int kOrderBits = 2;
 constexpr std::uint8_t kOrderMask = 3;
-constexpr int kSample = 3;  // rows from one to the next that are looked at to choose an order
-// Two columns may be worth a reference when they are this near in units of the last place.
+constexpr int kSample = 3;  // distance of the sample rows evaluated to choose an order
+// Two columns are candidates for a reference if they differ by at most this many units in the last
+// place.
 constexpr int kNear = 64;
 constexpr int kMostOrder = 3;
 
@@ -33,13 +34,13 @@ Word unzigzag(Word value) noexcept {
   return static_cast<Word>(value >> 1) ^ static_cast<Word>(Word{0} - (value & 1));
 }
 
-// NaNs are not the same bits everywhere.
+// NaN bit patterns differ between platforms.
 template <typename Word>
 Word number_word(double x) noexcept {
   return ordered_bits(std::isnan(x) ? Word{0} : std::bit_cast<Word>(x));
 }
 
-// What the polynomial of `order` through the values before *d gives for it.
+// Extrapolates the polynomial of `order` through the values before *d.
 template <typename Word>
 Word predicted(const Word* d, int order) noexcept {
   switch (order) {
@@ -88,14 +89,14 @@ void ColumnCodec<Word>::order_words(int rows) noexcept {
   }
 }
 
-// Of a row that may lie before the block.
+// The value in a row, which may precede the block.
 template <typename Word>
 Word ColumnCodec<Word>::word_at(int c, int row) noexcept {
   if (row >= 0) return column(c)[row];
   return -row <= seen_ ? before(c, -row) : 0;
 }
 
-// What the other column lets expect of column c in a row.
+// The prediction of column c in a row from the other column.
 template <typename Word>
 Word ColumnCodec<Word>::expected(const Choice& choice, int c, int row) noexcept {
   switch (choice.relation) {
@@ -147,7 +148,7 @@ void ColumnCodec<Word>::difference(const Choice& choice, int c, int rows) noexce
   }
 }
 
-// Bits of the residuals under each order; the rows at the start have fewer values before them.
+// Number of residual bits for each order; the first rows have fewer preceding values.
 template <typename Word>
 void ColumnCodec<Word>::try_orders(Choice choice, int c, int rows, Choice& best) noexcept {
   difference(choice, c, rows);
@@ -188,8 +189,8 @@ typename ColumnCodec<Word>::Choice ColumnCodec<Word>::choose(int c, int rows) no
     try_orders({0, Relation::unit, units_[at(c)], 0}, c, rows, best);
     return best;
   }
-  // A row before: commands and what is measured of them a tick later. Negative: errors of what is
-  // to be 0, which are derived.
+  // One row earlier: commands and their measurement one tick later. Negative: errors relative to 0,
+  // which are derived.
   constexpr bool kInputs = sizeof(Word) == sizeof(std::uint64_t);
   constexpr Relation kOther = kInputs ? Relation::before : Relation::negative;
   for (int other = 0; other < c; ++other) {
@@ -221,7 +222,7 @@ std::uint8_t* ColumnCodec<Word>::encode(int rows, bool continues, std::uint8_t* 
   if (!continues) seen_ = 0;
   order_words(rows);
   std::uint8_t* head = out;
-  // Heads first: they hardly change from block to block. Their length is not known yet.
+  // Headers first, because they hardly change between blocks. Their length is not known yet.
   std::uint8_t* planes = out + 4 * (columns_ - known_);
   std::uint8_t* const planes_begin = planes;
   for (int c = known_; c < columns_; ++c) {
@@ -261,7 +262,7 @@ bool ColumnCodec<Word>::decode(std::span<const std::uint8_t> bytes, int rows,
   for (int c = 0; c < known_; ++c) {
     for (int k = 0; k < rows; ++k) column(c)[k] = ordered_bits(column(c)[k]);
   }
-  // Where the planes begin: after all heads.
+  // The planes begin after all headers.
   std::size_t head = 0, plane = 0;
   for (int c = known_; c < columns_; ++c) {
     if (plane + 2 > bytes.size()) return false;
@@ -285,7 +286,7 @@ bool ColumnCodec<Word>::decode(std::span<const std::uint8_t> bytes, int rows,
       for (int k = 0; k < rows; ++k)
         residual_[at(k)] |= static_cast<Word>(bytes[plane++]) << (8 * b);
     }
-    difference(choice, c, 0);  // what lies before
+    difference(choice, c, 0);  // preceding values
     Word* d = difference_.data() + kHistory;
     for (int k = 0; k < rows; ++k) {
       d[k] = unzigzag(residual_[at(k)]) + predicted(d + k, std::min(choice.order, k + seen_));

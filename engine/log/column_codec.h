@@ -1,12 +1,12 @@
-// Lossless coding of columns of numbers that change little from row to row, as bytes that a general
-// compressor then shrinks well. docs/log.md has the format for those who read it elsewhere.
+// Lossless coding of columns of slowly varying numbers, as bytes that a general compressor then
+// compresses well. docs/log.md describes the format for other readers.
 //
-// A number is taken as an unsigned integer in the order of its value: x -> ~x if its sign bit is
-// set, else x with the sign bit set. A column is coded as what remains of it after a prediction:
-// d(k) = x(k), or x(k) minus what another column lets expect: its value in row k, in row k - 1, its
-// negative, or the value before plus its integral over the row's period;
-// r(k) = d(k) minus the polynomial of order 0 to 3 through the values before it, modulo 2^bits,
-// zigzag (0, -1, 1, -2 -> 0, 1, 2, 3), the bytes of equal significance together.
+// A number is mapped to an unsigned integer with the same order: x -> ~x if its sign bit is set,
+// else x with the sign bit set. A column is coded as the residual of a prediction: d(k) = x(k), or
+// x(k) minus a prediction from another column: its value in row k, in row k - 1, its negative, or
+// the previous value plus its integral over the row's period; r(k) = d(k) minus the polynomial of
+// order 0 to 3 through the previous values, modulo 2^bits, zigzag (0, -1, 1, -2 -> 0, 1, 2, 3),
+// bytes of equal significance together.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace footfall::engine {
 
-// An integer in the order of the number whose bits it is made from, and back.
+// Maps the bits of a number to an integer with the same order, and back.
 template <typename Word>
 constexpr Word ordered_bits(Word bits) noexcept {
   constexpr Word kSign = Word{1} << (8 * sizeof(Word) - 1);
@@ -27,46 +27,46 @@ constexpr Word plain_bits(Word ordered) noexcept {
   return (ordered & kSign) != 0 ? static_cast<Word>(ordered ^ kSign) : static_cast<Word>(~ordered);
 }
 
-// Codes or decodes one block of rows after another. Word: std::uint32_t (float) or std::uint64_t
-// (double). The first `known` columns are not coded: both sides have them, and others may refer to
-// them. Allocates in its constructor only (decode(): nothing but its error).
+// Encodes or decodes consecutive blocks of rows. Word: std::uint32_t (float) or std::uint64_t
+// (double). The first `known` columns are not coded: both sides have them, and other columns may
+// refer to them. Allocates only in its constructor (decode() only in case of an error).
 template <typename Word>
 class ColumnCodec {
  public:
-  // period: s from row to row, for integrals.
+  // period: s between rows, for integrals.
   ColumnCodec(int columns, int known, int max_rows, double period = 0.0);
 
-  // Column c (doubles) is the integral of column `rate` < c. Only the coding side needs to know.
+  // Declares column c (doubles) to be the integral of column `rate` < c; needed only for encoding.
   void set_integral(int c, int rate) { rates_[static_cast<std::size_t>(c)] = rate; }
   // The squares of column c and of the three from `first` on add up to 1 (quaternions).
   void set_unit(int c, int first) { units_[static_cast<std::size_t>(c)] = first; }
 
-  // Room for the words of a block, column by column: column c begins at c * max_rows().
+  // Memory for the words of a block, column by column: column c begins at c * max_rows().
   Word* column(int c) noexcept {
     return words_.data() + static_cast<std::size_t>(c) * static_cast<std::size_t>(max_rows_);
   }
   int max_rows() const noexcept { return max_rows_; }
-  // Bytes that a block of `rows` takes at most.
+  // Maximum number of bytes for a block of `rows`.
   std::size_t bound(int rows) const noexcept;
 
-  // Codes the words (bits as they are) of `rows` rows; continues: predictions may look at the block
-  // coded before. Returns the end of what was written to `out`.
+  // Encodes the words (unchanged bits) of `rows` rows; continues: predictions may use the previous
+  // block. Returns the end of the data written to `out`.
   std::uint8_t* encode(int rows, bool continues, std::uint8_t* out) noexcept;
-  // Puts the words back; the known columns must be there. False: the bytes are damaged.
+  // Restores the words; the known columns must be present. False if the bytes are malformed.
   bool decode(std::span<const std::uint8_t> bytes, int rows, bool continues) noexcept;
 
  private:
   static constexpr int kHistory = 4;
-  // How another column predicts: second part of a column's head.
+  // Prediction from another column: second part of a column's header.
   enum class Relation : std::uint8_t {
     none,
     same,       // its value
-    before,     // its value in the row before
-    negative,   // its value with the other sign
+    before,     // its value in the previous row
+    negative,   // its negated value
     integral2,  // x(k-1) + period ((1 - a) y(k-1) + a y(k)), a = 2/4 (trapezoid)
     integral3,  // 3/4 (semi-implicit Euler in two steps)
     integral4,  // 4/4 (semi-implicit Euler)
-    unit,       // sqrt(1 - the squares of three columns), with the sign of x(k-1)
+    unit,       // sqrt(1 - sum of the squares of three columns), with the sign of x(k-1)
   };
   struct Choice {
     int order = 0;
@@ -88,13 +88,13 @@ class ColumnCodec {
 
   int columns_, known_, max_rows_;
   double period_;
-  std::vector<int> rates_, units_;   // by column: set_integral(), set_unit(); else -1
-  int seen_ = 0;                     // rows of history that count
+  std::vector<int> rates_, units_;   // by column: arguments of set_integral(), set_unit(); else -1
+  int seen_ = 0;                     // valid rows of history
   std::vector<Word> words_;          // by column, max_rows_ each
-  std::vector<Word> history_;        // by column, the newest first
-  std::vector<Word> difference_;     // d of one column, kHistory rows before it
+  std::vector<Word> history_;        // by column, newest first
+  std::vector<Word> difference_;     // d of one column, preceded by kHistory rows
   std::vector<Word> residual_;       // r of one column
-  std::vector<std::uint8_t> moves_;  // by column: it is not the same in all rows
+  std::vector<std::uint8_t> moves_;  // by column: whether its value changes
 };
 
 extern template class ColumnCodec<std::uint32_t>;

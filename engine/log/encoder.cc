@@ -14,9 +14,9 @@
 namespace footfall::engine {
 namespace {
 
-constexpr std::int64_t kKeyBlocks = 20;       // every so many a block stands by itself
+constexpr std::int64_t kKeyBlocks = 20;       // blocks between self-contained ones
 constexpr double kWindow = 0.2;               // s around a highlight
-constexpr std::size_t kOtherMessage = 16384;  // more than any but a block takes
+constexpr std::size_t kOtherMessage = 16384;  // bytes, upper limit for messages other than blocks
 
 std::size_t block_bytes(std::size_t columns, int rows) {
   return columns + 64 + at(rows) * (sizeof(std::uint64_t) + 5);
@@ -176,7 +176,7 @@ void LogEncoder::write_plans(const LogBatch& batch) noexcept {
 }
 
 std::size_t LogEncoder::ring_row(std::int64_t tick) const noexcept {
-  return at((tick + ring_size_) % ring_size_);  // ticks begin at -1
+  return at((tick + ring_size_) % ring_size_);  // the first tick is -1
 }
 
 void LogEncoder::keep_rows(const LogBatch& batch) noexcept {
@@ -196,17 +196,17 @@ void LogEncoder::keep_rows(const LogBatch& batch) noexcept {
   }
 }
 
-// Every row_every-th tick, and all within the window around a highlight that are not in the file.
+// Writes every row_every-th tick, and all unwritten ones in the window around a highlight.
 void LogEncoder::write_rows(const LogBatch& batch) noexcept {
   const std::int64_t begin = batch.first_tick, end = begin + batch.ticks;
   std::int64_t full_from = end;  // of the first highlight in this batch
-  std::int64_t next = end;       // the first tick whose nearest later highlight is not yet known
+  std::int64_t next = end;       // first tick whose nearest later highlight is not yet known
   wanted_.clear();
   for (std::int64_t t = end - 1; t >= begin; --t) {
     if (batch.highlight[at(t - begin)] != 0) full_from = std::min(full_from, t - window_);
   }
   next = std::max(std::min(full_from, begin), end - ring_size_);
-  std::int64_t ahead = -1;  // the latest highlight at or after t, looked up below
+  std::int64_t ahead = -1;  // the first highlight at or after t, searched below
   for (std::int64_t t = next; t < end; ++t) {
     const std::size_t row = ring_row(t);
     if (t < 0 || ring_tick_[row] != t || ring_done_[row] != 0) continue;

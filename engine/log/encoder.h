@@ -1,5 +1,5 @@
-// The log's side away from the tick: codes batches of ticks as messages and puts them into the
-// file. See writer.h for the whole, docs/log.md for the format.
+// The part of the log outside the tick: encodes batches of ticks as messages and writes them to the
+// file. writer.h gives an overview, docs/log.md the format.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ enum class LogChannel : std::uint16_t { inputs = 1, signals, events, plans, edit
 // Columns of a planner's answer: tick, planner, sequence, ok (integers), target x y z,
 // predicted_pos x y, predicted_vel x y, extension (doubles).
 inline constexpr int kPlanColumns = 12;
-inline constexpr int kMostPlans = 256;  // of a batch
+inline constexpr int kMostPlans = 256;  // limit per batch
 
-// Some ticks in a row, and the small messages that belong to them.
+// Consecutive ticks, and their small messages.
 struct LogBatch {
   std::int64_t first_tick = 0;
   int ticks = 0;
@@ -29,7 +29,7 @@ struct LogBatch {
   std::vector<std::uint8_t> highlight;  // by tick
   int plans = 0;
   std::vector<std::uint64_t> plan_rows;  // plans x kPlanColumns
-  std::vector<std::uint8_t> messages;    // one after another: MessageHead, bytes
+  std::vector<std::uint8_t> messages;    // in sequence: MessageHead, bytes
   std::size_t message_bytes = 0;
 
   struct MessageHead {
@@ -41,11 +41,12 @@ struct LogBatch {
 
 class LogEncoder {
  public:
-  // Creates the file with everything that comes before the first tick. batch: ticks in one at most.
+  // Creates the file and writes everything before the first tick. batch: maximum number of ticks in
+  // a batch.
   LogEncoder(const std::string& path, const core::SignalTable& table, const LogHeader& header,
              int batch);
 
-  // Writes a batch and hands it to the kernel; batches come in the order of their ticks.
+  // Writes a batch and flushes it to the kernel; batches must be in tick order.
   void write(const LogBatch& batch) noexcept;
   void close() { mcap_.close(); }
   bool failed() const noexcept { return mcap_.failed(); }
@@ -71,14 +72,14 @@ class LogEncoder {
   ColumnCodec<std::uint64_t> plan_codec_;
   ColumnCodec<std::uint32_t> row_codec_;
   std::int64_t input_blocks_ = 0, plan_blocks_ = 0, row_blocks_ = 0;
-  // The last 0.2 s and a batch of rows, inputs then signals, as floats.
+  // Rows of the last 0.2 s and one batch, inputs then signals, as floats.
   std::int64_t ring_size_;
   std::vector<float> ring_;
-  std::vector<std::int64_t> ring_tick_;  // whose row is there
-  std::vector<std::uint8_t> ring_done_;  // it is in the file
+  std::vector<std::int64_t> ring_tick_;  // tick of the row
+  std::vector<std::uint8_t> ring_done_;  // whether it is in the file
   std::int64_t full_until_ = -1'000'000'000;
-  std::vector<std::int64_t> wanted_;  // ticks to write now
-  std::vector<std::uint8_t> coded_;   // columns of a block
+  std::vector<std::int64_t> wanted_;  // ticks to be written now
+  std::vector<std::uint8_t> coded_;   // encoded columns of a block
   std::vector<std::uint8_t> message_;
   McapWriter mcap_;
 };

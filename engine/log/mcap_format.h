@@ -1,5 +1,5 @@
-// The MCAP container format, version 0 (https://mcap.dev/spec): what its writer and its reader
-// share.
+// The MCAP container format, version 0 (https://mcap.dev/spec): definitions shared by writer and
+// reader.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace footfall::engine {
 inline constexpr std::array<std::uint8_t, 8> kMcapMagic = {0x89, 'M', 'C',  'A',
                                                            'P',  '0', '\r', '\n'};
 
-// Kind of a record: one byte, followed by a 64-bit length and the content; all little-endian.
+// Type of a record: one byte, followed by a 64-bit length and the content; all little-endian.
 enum class McapRecord : std::uint8_t {
   header = 0x01,
   footer = 0x02,
@@ -32,7 +32,7 @@ enum class McapRecord : std::uint8_t {
   data_end = 0x0F,
 };
 
-inline constexpr std::size_t kMcapRecordHead = 9;    // kind and length
+inline constexpr std::size_t kMcapRecordHead = 9;    // type and length
 inline constexpr std::size_t kMcapMessageHead = 22;  // channel, sequence, log and publish time
 
 // CRC-32 (IEEE 802.3, reflected, as in zlib) of `bytes`, continued from `crc` (0 at the start).

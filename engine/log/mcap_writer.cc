@@ -20,9 +20,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "MCAP is little-endian");
 
 constexpr std::size_t kChunkBytes = 256 * 1024;
-constexpr std::uint64_t kChunkTime = 500'000'000;  // ns of simulated time
+constexpr std::uint64_t kChunkTime = 500'000'000;  // ns of simulated time per chunk
 constexpr std::size_t kReservedChunks = 8192;      // more than an hour at kChunkTime
-constexpr int kLevel = 3;                          // of zstd
+constexpr int kLevel = 3;                          // zstd compression level
 
 constexpr auto kCrcTables = [] {
   std::array<std::array<std::uint32_t, 256>, 8> tables{};
@@ -55,7 +55,7 @@ std::uint8_t* store(std::uint8_t* at, T value) noexcept {
 
 }  // namespace
 
-// Eight bytes a round ("slicing by 8"): several times faster than a byte at a time.
+// Eight bytes per iteration ("slicing by 8"): several times faster than single bytes.
 std::uint32_t crc32(std::span<const std::uint8_t> bytes, std::uint32_t crc) noexcept {
   const auto& t = kCrcTables;
   std::uint32_t c = ~crc;
@@ -99,7 +99,8 @@ McapWriter::McapWriter(const std::string& path, std::string_view library, std::s
   chunks_.reserve(kReservedChunks);
   index_offsets_.reserve(2 * kReservedChunks);
   zstd_ = ZSTD_createCCtx();
-  // Once at full size, so that the work space of the compressor is there before the first tick.
+  // Compress once at full size, so that the compressor's work space is allocated before the first
+  // tick.
   ZSTD_compressCCtx(zstd_, compressed_.data(), compressed_.size(), chunk_.data(), capacity_,
                     kLevel);
 
@@ -114,7 +115,7 @@ McapWriter::~McapWriter() {
   try {
     close();
   } catch (const std::exception&) {
-    // Whoever wants to know calls close().
+    // Errors are only reported by an explicit close().
   }
   ZSTD_freeCCtx(zstd_);
 }
@@ -177,7 +178,7 @@ void McapWriter::add_attachment(std::string_view name, std::string_view media_ty
   std::vector<std::uint8_t> record;
   McapBytes bytes(record);
   bytes.u64(0);  // log time
-  bytes.u64(0);  // creation time: equal runs give equal files
+  bytes.u64(0);  // creation time: constant, so that equal runs give equal files
   bytes.text(name);
   bytes.text(media_type);
   bytes.u64(content.size());

@@ -1,5 +1,6 @@
-// Writes an MCAP file: messages in zstd-compressed chunks, each handed to the kernel when it ends,
-// so that a killed process loses the last chunk only. Beside the tick: the logger calls it.
+// Writes an MCAP file: messages in zstd-compressed chunks, each flushed to the kernel when
+// complete, so that a killed process loses only the last chunk. Not for use in the tick: called by
+// the logger.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ struct ZSTD_CCtx_s;
 
 namespace footfall::engine {
 
-// Little-endian bytes at the end of a vector.
+// Appends little-endian values to a vector.
 class McapBytes {
  public:
   explicit McapBytes(std::vector<std::uint8_t>& out) : out_(out) {}
@@ -32,41 +33,40 @@ using McapPairs = std::vector<std::pair<std::string, std::string>>;
 
 class McapWriter {
  public:
-  // Creates the file and writes its header. max_message: bytes of the longest message.
-  // Throws std::runtime_error, naming the path, if the file cannot be created.
+  // Creates the file and writes its header. max_message: size of the longest message, bytes. Throws
+  // std::runtime_error, naming the path, if the file cannot be created.
   McapWriter(const std::string& path, std::string_view library, std::size_t max_message);
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  // Before the first message; ids count from 1 in the order of the calls.
+  // To be called before the first message; ids count from 1 in call order.
   std::uint16_t add_schema(std::string_view name, std::string_view encoding,
                            std::span<const std::uint8_t> data);
   std::uint16_t add_channel(std::uint16_t schema, std::string_view topic,
                             std::string_view encoding);
   void add_metadata(std::string_view name, const McapPairs& pairs);
-  // A file as a whole.
+  // Embeds a complete file.
   void add_attachment(std::string_view name, std::string_view media_type, std::string_view content);
 
-  // Room for one message of `size` <= max_message bytes, which the caller fills at once. Allocates
-  // nothing as long as chunks stay below kReservedChunks. Ends the chunk before it where one is
-  // due.
+  // Memory for one message of `size` <= max_message bytes, to be filled at once. Does not allocate
+  // while there are less than kReservedChunks chunks. Ends the previous chunk if it is due.
   std::uint8_t* message(std::uint16_t channel, std::int64_t time_ns, std::size_t size) noexcept;
-  // Ends the chunk: compresses it and hands it to the kernel.
+  // Ends the chunk: compresses it and flushes it to the kernel.
   void end_chunk() noexcept;
   // Ends the last chunk and writes the summary. Throws std::runtime_error if any write failed.
   void close();
-  // A write failed (disk full, say); what follows is dropped.
+  // Whether a write failed (e.g. disk full); later data are dropped.
   bool failed() const noexcept { return error_ != 0; }
 
  private:
   struct Channel {
     std::uint32_t sequence = 0;
-    std::vector<std::uint64_t> index;  // time and offset of each message of this chunk, in turn
+    std::vector<std::uint64_t> index;  // alternating time and offset of each message of this chunk
   };
   struct ChunkEntry {
     std::uint64_t start_time, end_time, offset, length, index_length, compressed, uncompressed;
-    std::vector<std::uint64_t>::size_type first_offset;  // into index_offsets_
+    std::vector<std::uint64_t>::size_type first_offset;  // index into index_offsets_
   };
   struct MetadataEntry {
     std::uint64_t offset, length;
@@ -78,7 +78,7 @@ class McapWriter {
   };
 
   void put_record(std::uint8_t kind, std::span<const std::uint8_t> content);
-  void write_out() noexcept;  // out_ to the kernel, and empties it
+  void write_out() noexcept;  // writes out_ to the kernel and clears it
   void write_indices(ChunkEntry& entry);
   void write_summary();
   void write_chunk_index(const ChunkEntry& entry);
@@ -89,23 +89,23 @@ class McapWriter {
 
   std::string path_;
   int file_ = -1;
-  int error_ = 0;  // errno of the first write that failed
+  int error_ = 0;  // errno of the first failed write
   bool closed_ = false;
-  std::uint64_t written_ = 0;   // bytes handed to the kernel
-  std::uint32_t data_crc_ = 0;  // of all bytes handed to the kernel
+  std::uint64_t written_ = 0;   // bytes written to the kernel
+  std::uint32_t data_crc_ = 0;  // over all bytes written to the kernel
   ZSTD_CCtx_s* zstd_ = nullptr;
   std::size_t capacity_ = 0;
-  std::vector<std::uint8_t> chunk_;       // uncompressed records of the chunk that is being filled
+  std::vector<std::uint8_t> chunk_;       // uncompressed records of the current chunk
   std::size_t chunk_size_ = 0;            // bytes of chunk_ in use
   std::vector<std::uint8_t> compressed_;  // worst case for a full chunk
-  std::vector<std::uint8_t> out_;         // records about to be written
+  std::vector<std::uint8_t> out_;         // records to be written next
   std::vector<std::uint8_t> scratch_;     // content of one record
   std::uint64_t chunk_start_ = 0, chunk_end_ = 0;
   std::uint64_t file_start_ = 0, file_end_ = 0, message_count_ = 0;
   std::vector<Channel> channels_;  // by id - 1
   std::vector<std::vector<std::uint8_t>> schema_records_, channel_records_;
   std::vector<ChunkEntry> chunks_;
-  std::vector<std::uint64_t> index_offsets_;  // per chunk and channel; 0: no message there
+  std::vector<std::uint64_t> index_offsets_;  // per chunk and channel; 0: no messages
   std::vector<MetadataEntry> metadata_;
   std::vector<AttachmentEntry> attachments_;
 };

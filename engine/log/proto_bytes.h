@@ -1,4 +1,4 @@
-// Fields of protobuf messages written one after another into memory that is large enough
+// Writes fields of protobuf messages in sequence to preallocated memory
 // (https://protobuf.dev/programming-guides/encoding); allocates nothing.
 #pragma once
 
@@ -34,7 +34,7 @@ class ProtoBytes {
     begin_text(field, values.size_bytes());
     for (const double value : values) fixed(std::bit_cast<std::uint64_t>(value));
   }
-  // What follows is `size` bytes of the field: fixed() or varint() of a packed list, or bytes.
+  // The next `size` bytes belong to the field: fixed() or varint() of a packed list, or bytes.
   void begin_text(int field, std::size_t size) noexcept {
     tag(field, 2);
     varint(size);

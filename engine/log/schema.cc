@@ -16,7 +16,7 @@ struct FieldRow {
   bool repeated = false;
 };
 
-// Fields of one message stand together, in the order of their numbers.
+// Fields of one message are contiguous, in order of their numbers.
 constexpr FieldRow kFields[] = {
     {"InputBlock", "first_tick", 1, Field::TYPE_SINT64},
     {"InputBlock", "ticks", 2, Field::TYPE_UINT32},

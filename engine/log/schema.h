@@ -1,6 +1,6 @@
-// The messages of a log as a protobuf schema; the one door to libprotobuf. The messages themselves
-// are written by hand (engine/log/proto_bytes.h), since the writer must not allocate. docs/log.md
-// says what each field means.
+// The messages of a log as a protobuf schema; the only use of libprotobuf. The messages themselves
+// are encoded by hand (engine/log/proto_bytes.h), because the writer must not allocate. docs/log.md
+// describes each field.
 #pragma once
 
 #include <cstdint>

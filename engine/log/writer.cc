@@ -1,4 +1,4 @@
-// From the tick to the logger's thread; see writer.h.
+// Transfers data from the tick to the logger's thread; see writer.h.
 #include "engine/log/writer.h"
 
 #include <algorithm>
@@ -19,17 +19,17 @@ namespace footfall::engine {
 namespace {
 
 constexpr std::size_t kMaxText = 4096;
-constexpr std::size_t kMessageBytes = 256 * 1024;  // of a batch
+constexpr std::size_t kMessageBytes = 256 * 1024;  // per batch
 constexpr std::size_t kLongestMessage = 3 * (kMaxText + 4) + 64;
-constexpr double kBatchTime = 0.05;  // s; two of them are lost at most
+constexpr double kBatchTime = 0.05;  // s; a kill loses at most two batches
 constexpr std::uint32_t kBatches = 2;
-// How often the thread looks for a full batch. Waking it would cost the tick more than the copy of
-// a tick does. In lock-step a batch is full after one or two milliseconds.
+// Polling period of the thread. A wake-up would cost the tick more than the copy of a tick does. In
+// lock-step a batch fills in one or two milliseconds.
 constexpr std::chrono::microseconds kLookAgain{1000}, kLookAgainInLockstep{200};
 
 using Clock = std::chrono::steady_clock;
 
-// At most kMaxText bytes, never half a UTF-8 character.
+// Truncates to kMaxText bytes at a UTF-8 character boundary.
 std::string_view cut(std::string_view text) noexcept {
   if (text.size() <= kMaxText) return text;
   std::size_t end = kMaxText;
@@ -37,8 +37,8 @@ std::string_view cut(std::string_view text) noexcept {
   return text.substr(0, end);
 }
 
-// Asks for memory that the next tick will write: the logger's thread has read it, so it is in
-// another core's cache, and fetching it back would be most of what the log costs a tick.
+// Prefetches memory that the next tick will write: it is in the cache of the core that runs the
+// logger's thread, and cache misses would be most of the log's cost in a tick.
 void fetch_to_write(const void* begin, std::size_t bytes) noexcept {
   constexpr std::size_t kLine = 64;
   const char* at = static_cast<const char*>(begin);
@@ -51,7 +51,7 @@ int batch_ticks(std::int64_t rate_mhz) {
 
 }  // namespace
 
-// Two batches in turn: the tick fills one while the thread writes the other.
+// Two alternating batches: the tick fills one while the thread writes the other.
 struct LogWriter::Impl {
   Impl(const std::string& path, const core::SignalTable& table, const LogHeader& header)
       : most_ticks(batch_ticks(header.rate_mhz)),
@@ -85,15 +85,15 @@ struct LogWriter::Impl {
   const bool lockstep;
   LogEncoder encoder;
   std::array<LogBatch, kBatches> batches;
-  // Numbers of batches: written <= filled <= written + kBatches; the one being filled is `filled`.
+  // Counts of batches: written <= filled <= written + kBatches; the current batch is `filled`.
   std::atomic<std::uint32_t> filled{0}, written{0};
   std::atomic<bool> ending{false};
-  std::int64_t dropped = 0;   // ticks since there was no room
-  Clock::time_point started;  // of the batch being filled
+  std::int64_t dropped = 0;   // ticks dropped since the queue became full
+  Clock::time_point started;  // start of the current batch
   std::thread thread;
 };
 
-// Whether there is a batch to fill; in lock-step there always is, after a while.
+// Whether a batch is free; in lock-step waits until one is.
 bool LogWriter::Impl::room() noexcept {
   const std::uint32_t mine = filled.load(std::memory_order_relaxed);
   for (auto done = written.load(std::memory_order_acquire); mine - done >= kBatches;
@@ -115,7 +115,7 @@ void LogWriter::Impl::work() noexcept {
     while (filled.load(std::memory_order_acquire) == number) {
       std::this_thread::sleep_for(lockstep ? kLookAgainInLockstep : kLookAgain);
     }
-    if (ending.load()) return;  // everything is written: stop() has waited for it
+    if (ending.load()) return;  // everything is written, because stop() waits for it
     LogBatch& batch = batches[number % kBatches];
     encoder.write(batch);
     batch.ticks = batch.plans = 0;
@@ -178,7 +178,7 @@ LogWriter::~LogWriter() {
   try {
     close();
   } catch (const std::exception&) {
-    // Whoever wants to know calls close().
+    // Errors are only reported by an explicit close().
   }
 }
 
@@ -244,7 +244,7 @@ void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
     put(plan.extension);
   }
   if (trace.writes.empty() && trace.events.empty() && !trace.limit_steps) return;
-  constexpr std::size_t kWrites = 256;  // of one message
+  constexpr std::size_t kWrites = 256;  // per message
   for (std::size_t from = 0; from == 0 || from < trace.writes.size(); from += kWrites) {
     const std::size_t count = std::min(kWrites, trace.writes.size() - from);
     std::uint8_t* to = m.message(kLongestMessage);

@@ -1,6 +1,6 @@
-// A backend without physics: every joint is a double integrator q̈ = τ / inertia, the base stands
-// still, contacts follow a script. It runs the same tick as a simulator or a robot, for tests of
-// the engine and for trying a behavior's timing without a model of the world.
+// A backend without physics: every joint is a double integrator q̈ = τ / inertia, the base does not
+// move, contacts follow a script. It runs the same tick as a simulator or a robot, for tests of the
+// engine and of a behavior's timing.
 #pragma once
 
 #include <functional>
@@ -17,13 +17,13 @@ struct StubSettings {
   double inertia = 1.0;          // kg m^2, of every joint
   std::vector<double> start;     // rad, joint positions at start
   std::array<double, 3> base{};  // m, base origin in the world
-  // Which contacts are closed at a time; null: all, always.
+  // Whether a contact is closed at a time (s); null: all closed, always.
   std::function<bool(int contact, double time)> contact_script;
 };
 
 class StubBackend final : public Hardware {
  public:
-  // Throws std::runtime_error if sizes do not fit together.
+  // Throws std::runtime_error if the sizes are inconsistent.
   explicit StubBackend(StubSettings settings);
   std::string name() const override { return "stub"; }
   void start() override;

@@ -32,8 +32,7 @@ class Comparison {
     events();
     edits();
     plans();
-    // Within a tick causes come first: what was measured, what came from outside, what was made of
-    // it.
+    // Within a tick causes precede effects: measurements, external inputs, then results.
     const auto when = [](const LogDifference& d) {
       constexpr std::string_view kCauses[] = {"input", "edit", "plan"};
       const auto* cause = std::ranges::find(kCauses, std::string_view(d.kind));
@@ -56,7 +55,7 @@ class Comparison {
     }
     for (const std::string& key : keys) {
       if (a_.get(key) == b_.get(key)) continue;
-      const bool shown = key != "states";  // long
+      const bool shown = key != "states";  // too long to print
       out_.setup.push_back(shown
                                ? fmt::format("{}: '{}' against '{}'", key, a_.get(key), b_.get(key))
                                : key + ": not the same");
@@ -105,7 +104,7 @@ class Comparison {
     }
   }
 
-  // Commands and what was measured; then how long the runs are.
+  // Compares commands and measurements, then the lengths of the runs.
   void inputs() {
     const LoggedInputs& x = a_.inputs;
     const LoggedInputs& y = b_.inputs;

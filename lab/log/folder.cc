@@ -1,4 +1,4 @@
-// Unpacks the files of a log; see folder.h.
+// Unpacks the files embedded in a log; see folder.h.
 #include "lab/log/folder.h"
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// The files that a log holds, on the disk again for as long as they are needed.
+// Unpacks the files embedded in a log to a temporary folder.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace footfall::lab {
 
-// A temporary folder that is gone with its owner. Throws std::runtime_error with the path.
+// A temporary folder, removed by the destructor. Throws std::runtime_error with the path.
 class LogFolder {
  public:
   explicit LogFolder(const Log& log);
@@ -17,9 +17,9 @@ class LogFolder {
   LogFolder(const LogFolder&) = delete;
   LogFolder& operator=(const LogFolder&) = delete;
 
-  // Where a file of the log is here: files that name each other relatively still find each other.
+  // Path of the unpacked copy of a file of the log; relative references between files stay valid.
   std::string place_of(const std::string& path) const;
-  // Where bases and robots that were found by name are: for LoadOptions::search.
+  // Folders of bases and robots that were found by name, for LoadOptions::search.
   const std::vector<std::string>& search() const { return search_; }
 
  private:

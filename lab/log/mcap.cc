@@ -18,7 +18,7 @@ namespace {
 using engine::kMcapMagic;
 using engine::McapRecord;
 
-constexpr std::uint64_t kMaxChunk = 256U << 20;  // far above what the writer makes
+constexpr std::uint64_t kMaxChunk = 256U << 20;  // far above the chunks that the writer makes
 
 class Walk {
  public:
@@ -29,7 +29,7 @@ class Walk {
     while (cursor.left() >= engine::kMcapRecordHead) {
       const auto kind = cursor.number<McapRecord>();
       const auto size = cursor.number<std::uint64_t>();
-      if (size > cursor.left()) return false;  // cut off
+      if (size > cursor.left()) return false;  // truncated
       if (kind == McapRecord::data_end) {
         return file.size() >= 2 * kMcapMagic.size() &&
                std::ranges::equal(file.last(kMcapMagic.size()), kMcapMagic);
@@ -115,7 +115,7 @@ class Walk {
 std::vector<std::uint8_t> load(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-  // A folder opens, too, and claims the largest size there is.
+  // A folder can be opened, too, and reports the largest possible size.
   if (size < 0 || size == std::numeric_limits<std::streamoff>::max()) {
     const auto why = file ? std::errc::is_a_directory : std::errc::no_such_file_or_directory;
     throw std::runtime_error("cannot read the log '" + path +
@@ -181,7 +181,7 @@ bool visit_mcap(Bytes file, McapVisitor& visitor) {
   try {
     return Walk(visitor).read(file);
   } catch (const Damaged&) {
-    return false;  // what came before the damage stays
+    return false;  // records before the damage are kept
   }
 }
 

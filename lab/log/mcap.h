@@ -1,5 +1,5 @@
-// Reads the records of an MCAP file, whole or cut off at any byte. Every length is checked: a file
-// may be damaged.
+// Reads the records of an MCAP file, complete or truncated at any byte. Every length is checked,
+// because the file may be damaged.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace footfall::lab {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// The file, or a part of it, is not what it says.
+// Thrown if the file, or a part of it, is malformed.
 struct Damaged {};
 
-// Takes numbers and texts from the front of some bytes; Damaged when they end too early.
+// Reads numbers and texts from the front of a byte sequence; throws Damaged if it is too short.
 class Cursor {
  public:
   explicit Cursor(Bytes bytes) : rest_(bytes) {}
@@ -44,7 +44,7 @@ class Cursor {
   Bytes rest_;
 };
 
-// One field of a protobuf message: what its wire type gives.
+// One field of a protobuf message, decoded by wire type only.
 struct ProtoField {
   std::uint64_t number = 0;
   std::uint64_t integer = 0;  // varint, or the bits of a fixed number
@@ -56,7 +56,7 @@ struct ProtoField {
 };
 ProtoField next_field(Cursor& cursor);
 
-// What a file's records are told to; each may throw Damaged.
+// Receives the records of a file; each function may throw Damaged.
 class McapVisitor {
  public:
   virtual ~McapVisitor() = default;
@@ -68,12 +68,12 @@ class McapVisitor {
   virtual void message(int channel, Bytes content) = 0;
 };
 
-// The bytes of a file that begins as an MCAP file does. Throws std::runtime_error with one sentence
-// that names the path: missing, unreadable, not a log.
+// The content of an MCAP file. Throws std::runtime_error with one sentence that names the path if
+// it is missing, unreadable, or not a log.
 std::vector<std::uint8_t> load_mcap(const std::string& path);
 
-// Visits the records in the file's order. True: the file has its proper end; false: it is cut off
-// or damaged, and what came before that was visited.
+// Visits the records in file order. True if the file is complete; false if it is truncated or
+// damaged, after visiting all records before the damage.
 bool visit_mcap(Bytes file, McapVisitor& visitor);
 
 }  // namespace footfall::lab

@@ -1,4 +1,4 @@
-// Reader of logs; see reader.h. The coding of blocks is engine/log/column_codec.h's.
+// Reader of logs; see reader.h. engine/log/column_codec.h defines the coding of blocks.
 #include "lab/log/reader.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 namespace footfall::lab {
 namespace {
 
-constexpr int kMaxRows = 1 << 16;          // of a block: far above what the writer makes
-constexpr std::int64_t kKeptTicks = 8192;  // whose inputs rows may refer to
+constexpr int kMaxRows = 1 << 16;          // per block; far above the blocks that the writer makes
+constexpr std::int64_t kKeptTicks = 8192;  // ticks whose inputs rows may refer to
 
 std::vector<std::string> texts_of(const std::string& json) {
   const auto list = nlohmann::json::parse(json, nullptr, false);
@@ -77,7 +77,7 @@ class Reader final : public McapVisitor {
   engine::ColumnCodec<std::uint64_t> plan_codec_{engine::kPlanColumns, 0, engine::kMostPlans};
   std::unique_ptr<engine::ColumnCodec<std::uint32_t>> row_codec_;
   std::vector<float> recent_;              // inputs of the last ticks as floats
-  std::vector<std::int64_t> recent_tick_;  // which tick that is
+  std::vector<std::int64_t> recent_tick_;  // tick of each of them
 };
 
 void Reader::metadata(const std::string& name, const std::string& key, const std::string& value) {
@@ -148,10 +148,10 @@ Reader::Block Reader::block(Bytes content, bool inputs) const {
   return block;
 }
 
-// The first block tells how long blocks are at most: all but the last are that long.
+// All blocks but the last have the length of the first.
 void Reader::make_codecs(int rows) {
   if (input_codec_ && input_codec_->max_rows() >= rows) return;
-  // Room for the longest at once: a codec carries the end of the block before.
+  // Allocate for the longest block at once: a codec keeps state from the previous block.
   const int most =
       std::max(rows, static_cast<int>(std::min<std::int64_t>(kMaxRows, log_.rate_mhz / 1000)));
   const auto columns = static_cast<int>(log_.inputs.columns.size());
@@ -208,7 +208,7 @@ void Reader::rows(const Block& block) {
 void Reader::row(std::int64_t tick, int k) {
   const auto inputs = static_cast<int>(log_.inputs.columns.size());
   log_.tick.push_back(tick);
-  // As the ticks' times are: whole nanoseconds.
+  // As tick times are computed: in whole nanoseconds.
   log_.time.push_back(static_cast<double>(tick * 1'000'000'000'000LL / log_.rate_mhz) * 1e-9);
   for (std::size_t s = 0; s < log_.column.size(); ++s) {
     log_.column[s].push_back(
@@ -297,7 +297,7 @@ void Reader::parameters(Bytes content) {
   }
 }
 
-// Rows before a transition were written after those of their time.
+// Rows before a transition were written late, after rows of a later time: sort them.
 void Reader::finish() {
   for (auto& column : log_.column) column.resize(log_.rows());
   log_.tick.resize(log_.rows());

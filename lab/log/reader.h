@@ -1,5 +1,5 @@
-// Reads the log of a run (engine/log/writer.h), whole or cut off at any byte: what was complete
-// before the cut is there. After a run, for reports, comparisons, replay and tests.
+// Reads the log of a run (engine/log/writer.h), complete or truncated at any byte; everything
+// before the cut is returned. After a run, for reports, comparisons, replay and tests.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct LoggedEvent {
   std::int64_t tick = 0;
 };
 
-// A planner's answer as it was handed to the behavior.
+// A planner's answer as it was delivered to the behavior.
 struct LoggedPlan {
   std::int64_t tick = 0;
   int planner = 0;
@@ -38,10 +38,10 @@ struct LoggedPlan {
   double extension = 0.0;                 // s
 };
 
-// What came to parameters and events from outside just before a tick of the behavior.
+// External changes of parameters and external events just before a tick of the behavior.
 struct LoggedEdit {
   std::int64_t tick = 0;
-  std::vector<std::pair<int, double>> writes;  // slot and value
+  std::vector<std::pair<int, double>> writes;  // slots and their new values
   std::vector<int> events;                     // into Log::event_names
   bool limit_steps = false;                    // torque steps were limited in this tick
 };
@@ -57,13 +57,13 @@ struct LoggedParameter {
   int slot = 0, size = 1;  // in Log::parameter_values
 };
 
-// Inputs, commands and digests of ticks in a row, bit for bit.
+// Inputs, commands and digests of consecutive ticks, bit for bit.
 struct LoggedInputs {
-  std::vector<std::string> columns;  // as engine::InputLayout names them
+  std::vector<std::string> columns;  // named as in engine::InputLayout
   std::vector<std::string> joints, contacts;
   std::int64_t first_tick = 0;
   std::vector<std::uint64_t> words;   // ticks x columns
-  std::vector<std::uint64_t> digest;  // of all signals, by tick
+  std::vector<std::uint64_t> digest;  // digest of all signals, by tick
 
   std::int64_t ticks() const { return static_cast<std::int64_t>(digest.size()); }
   const std::uint64_t* row(std::int64_t tick) const {
@@ -73,13 +73,13 @@ struct LoggedInputs {
 
 struct Log {
   std::string path;
-  bool complete = false;  // false: no proper end, the run was killed or the file cut
+  bool complete = false;  // false if truncated or the run was killed
   std::map<std::string, std::string> run;
-  std::string setup;             // JSON: what a replay starts from
+  std::string setup;             // JSON: the initial condition of a replay
   std::int64_t rate_mhz = 1000;  // ticks per second, in millihertz
-  int row_every = 1;             // ticks from row to row away from transitions and faults
+  int row_every = 1;             // ticks between rows, except around transitions and faults
   std::vector<LoggedSignal> signals;
-  std::vector<std::int64_t> tick;          // of each row, growing
+  std::vector<std::int64_t> tick;          // of each row, increasing
   std::vector<double> time;                // s, of each row
   std::vector<std::vector<float>> column;  // [signal][row], SI
   std::vector<LoggedEvent> events;
@@ -87,13 +87,13 @@ struct Log {
   std::vector<LoggedEdit> edits;
   std::vector<std::string> event_names;
   std::vector<LoggedParameter> parameters;
-  std::vector<double> parameter_values;  // before the first tick, by slot
+  std::vector<double> parameter_values;  // initial values, by slot
   std::vector<LoggedFile> files;
-  LoggedInputs inputs;  // empty unless asked for
+  LoggedInputs inputs;  // empty unless requested
 
-  // Index of a signal, -1 if there is none.
+  // Index of a signal, -1 if absent.
   int find(std::string_view name) const;
-  // Column of a signal, null if there is none.
+  // Column of a signal, nullptr if absent.
   const std::vector<float>* values(std::string_view name) const;
   // Entry of `run`, or `otherwise`.
   std::string get(const std::string& key, const std::string& otherwise = "") const;
@@ -101,12 +101,12 @@ struct Log {
 };
 
 struct ReadOptions {
-  bool all_rows = false;  // false: only each row_every-th tick's, evenly spaced
+  bool all_rows = false;  // false: only every row_every-th tick, evenly spaced
   bool inputs = false;
 };
 
-// Throws std::runtime_error with one sentence that names the path: missing, not a log, or damaged
-// or cut before its first row could be described.
+// Throws std::runtime_error with one sentence that names the path if the file is missing, not a
+// log, or damaged or truncated before the description of its columns.
 Log read_log(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace footfall::lab

@@ -1,4 +1,4 @@
-// Cuts a log in time; see window.h.
+// Time window of a log; see window.h.
 #include "lab/log/window.h"
 
 #include <algorithm>

@@ -28,7 +28,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A child that closed its pipes and goes on is noticed this late.
+// Longest delay until a child is noticed that closed its pipes but keeps running.
 constexpr int kPollPeriodMs = 20;
 
 constexpr const char* kParent = "FOOTFALL_PARENT";
@@ -37,7 +37,7 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A file descriptor that closes itself.
+// A file descriptor, closed by the destructor.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -60,13 +60,13 @@ class Descriptor {
   int fd_ = -1;
 };
 
-// What a pipe delivers, of which only the end is kept.
+// Output of a pipe, of which only the end is kept.
 struct Stream {
   Descriptor fd;
   std::string* text = nullptr;
   std::size_t keep = 0;
 
-  // Takes what is there; true if something was cut off.
+  // Reads the available data; true if something was discarded.
   bool drain() {
     std::array<char, 65536> buffer;
     bool cut = false;
@@ -79,11 +79,11 @@ struct Stream {
         break;
       }
       text->append(buffer.data(), static_cast<std::size_t>(count));
-      // Halves at once: dropping a little each time would copy the whole each time.
+      // Discard half at once: discarding a little each time would copy the whole buffer each time.
       if (text->size() > 2 * keep) {
         text->erase(0, text->size() - keep);
         cut = true;
-        break;  // a child that floods does not keep the others waiting
+        break;  // a child that floods its output must not delay the others
       }
     }
     return cut;
@@ -96,7 +96,7 @@ struct Child {
   Clock::time_point start, terminated;
   Stream out, err;
   bool terminating = false, killed = false;
-  ProcessEnd why = ProcessEnd::exited;  // of its death, if we killed it
+  ProcessEnd why = ProcessEnd::exited;  // why we killed it, if we did
   ProcessResult result;
 };
 
@@ -113,7 +113,7 @@ void limit(pid_t pid, __rlimit_resource resource, rlim_t value) {
   ::prlimit(pid, resource, &both, nullptr);
 }
 
-// 0, or the error number of what failed.
+// Returns 0, or the error number of the failed call.
 int spawn(const Command& command, int out, int err, pid_t& pid) {
   std::vector<char*> arguments;
   for (const std::string& argument : command.arguments) {
@@ -148,7 +148,7 @@ class Pool {
   Pool(const std::vector<Command>& commands, const PoolSettings& settings)
       : commands_(commands), settings_(settings) {}
 
-  // Only after an exception is anyone left.
+  // Children remain only after an exception.
   ~Pool() {
     for (const auto& child : running_) {
       ::kill(-child->pid, SIGKILL);
@@ -215,7 +215,7 @@ class Pool {
         if (stream->fd.open()) polled_.push_back({stream->fd.get(), POLLIN, 0});
       }
     }
-    // Both pipes closed: its end is a matter of microseconds.
+    // Both pipes are closed, so the child exits within microseconds.
     const bool ending = std::ranges::any_of(
         running_, [](const auto& child) { return !child->out.fd.open() && !child->err.fd.open(); });
     ::poll(polled_.data(), polled_.size(), ending ? 1 : kPollPeriodMs);
@@ -248,7 +248,7 @@ class Pool {
       Child& child = *running_[i];
       int status = 0;
       rusage usage{};
-      // The process stays a zombie until its group was killed: its number cannot be another's.
+      // The process stays a zombie until its group is killed, so that its id cannot be reused.
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(child.pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
           info.si_pid == 0) {
@@ -267,7 +267,7 @@ class Pool {
   void finish(Child& child, int status, const rusage& usage) const {
     ProcessResult& result = child.result;
     for (Stream* stream : {&child.out, &child.err}) {
-      // Bounded: a grandchild that fled its group may write on and on.
+      // Bounded: a grandchild that left the process group may write forever.
       for (int reads = 0; reads < 8 && stream->drain(); ++reads) result.truncated = true;
       if (stream->text->size() > stream->keep) {
         stream->text->erase(0, stream->text->size() - stream->keep);
@@ -327,9 +327,9 @@ void die_with_parent() {
   const char* text = std::getenv(kParent);
   if (text == nullptr) return;
   const long parent = std::atol(text);
-  ::unsetenv(kParent);  // not for its own children
+  ::unsetenv(kParent);  // not inherited by its own children
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != static_cast<pid_t>(parent)) std::_Exit(1);  // it died before
+  if (::getppid() != static_cast<pid_t>(parent)) std::_Exit(1);  // the parent died before prctl
 }
 
 std::string shell_line(const std::vector<std::string>& arguments) {

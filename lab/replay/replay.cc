@@ -1,4 +1,4 @@
-// The tick on logged inputs; see replay.h.
+// Runs the tick on logged inputs; see replay.h.
 #include "lab/replay/replay.h"
 
 #include <fmt/format.h>
@@ -19,11 +19,11 @@
 namespace footfall::lab {
 namespace {
 
-// Gives what was read in the run; commands go nowhere.
+// Returns the logged sensor data; commands are discarded.
 class LoggedHardware final : public hal::Hardware {
  public:
   explicit LoggedHardware(const LoggedInputs& inputs) { play(inputs, inputs.first_tick); }
-  // These from here on, `next` first.
+  // Plays these inputs, beginning with tick `next`.
   void play(const LoggedInputs& inputs, std::int64_t next) {
     inputs_ = &inputs;
     layout_.emplace(inputs.joints, inputs.contacts);
@@ -46,7 +46,7 @@ class LoggedHardware final : public hal::Hardware {
  private:
   const LoggedInputs* inputs_ = nullptr;
   std::optional<engine::InputLayout> layout_;
-  std::int64_t next_ = -1;  // -1: what start() reads
+  std::int64_t next_ = -1;  // -1: the data read by start()
 };
 
 std::unique_ptr<behaviors::Behavior> load(const RunSetup& setup, const std::string& file,
@@ -63,7 +63,7 @@ std::unique_ptr<behaviors::Behavior> load(const RunSetup& setup, const std::stri
   return behavior;
 }
 
-// Where each of the log's values is in a behavior that may be another; -1: nowhere.
+// Slot of each logged value in the behavior, which may be a different one; -1 if absent.
 std::vector<int> slot_map(const Log& log, const behaviors::Behavior& behavior) {
   std::vector<int> map(log.parameter_values.size(), -1);
   for (const LoggedParameter& logged : log.parameters) {
@@ -91,7 +91,7 @@ bool same(const behaviors::PlanAnswer& a, const behaviors::PlanAnswer& b) {
          std::memcmp(&a.extension, &b.extension, sizeof a.extension) == 0;
 }
 
-// One behavior of the run on one log, or on a later one when it was brought back.
+// One behavior of the run with one log, or with a later log after a reload was reverted.
 struct ReplayStage {
   ReplayStage(const Log& l, const std::string& behavior_file)
       : log(&l), folder(l), setup(read_setup(l.setup)), hardware(l.inputs) {
@@ -111,7 +111,7 @@ struct ReplayStage {
     plan = edit = 0;
   }
 
-  // The same behavior again, later in the run; what its first tick reads was read.
+  // Resumes the behavior later in the run; the data of its first tick were already read.
   void play(const Log& later, const RunSetup& its_setup) {
     log = &later;
     setup.continues = its_setup.continues;
@@ -147,18 +147,18 @@ struct ReplayStage {
   RunSetup setup;
   LoggedHardware hardware;
   std::unique_ptr<behaviors::Behavior> behavior;
-  std::vector<int> slots, events;  // by the log's slot and event
+  std::vector<int> slots, events;  // indexed by the log's slot and event
   engine::InputTrace trace;
   std::unique_ptr<engine::ControlLoop> loop;
-  std::size_t plan = 0, edit = 0;  // the next of the log's
+  std::size_t plan = 0, edit = 0;  // next entry of the log
 };
 
 }  // namespace
 
 struct Replay::Impl {
   std::unique_ptr<ReplayStage> now, before;
-  bool computed = false;  // the last tick is still to be ended
-  bool read = false;      // what the next tick reads is there already
+  bool computed = false;  // the last tick is not yet finished
+  bool read = false;      // the data of the next tick were already read
 
   void end_tick() {
     if (computed) now->loop->actuate();
@@ -179,7 +179,7 @@ Replay::Replay(const Log& log, const std::string& behavior_file) : impl_(std::ma
 }
 Replay::~Replay() = default;
 
-// As lab::Reloads did it in the run.
+// Same order as in lab::Reloads.
 void Replay::go_on(const Log& next_log) {
   const RunSetup setup = read_setup(next_log.setup);
   const bool back = setup.continues.back && impl_->before != nullptr;
@@ -188,7 +188,7 @@ void Replay::go_on(const Log& next_log) {
     throw std::runtime_error(
         fmt::format("the log '{}' does not begin where the one before ends", next_log.path));
   }
-  if (back) {  // its tick is done again by the behavior from before
+  if (back) {  // the restored behavior repeats this tick
     impl_->computed = false;
     impl_->read = true;
     impl_->before->play(next_log, setup);
@@ -239,7 +239,7 @@ std::vector<std::string> Replay::plan_differences() const {
   const auto& logged = impl_->now->trace.plans;
   const auto& now = impl_->now->trace.planned;
   for (const behaviors::PlanAnswer& then : logged) {
-    // Planners that were made to fail in the run answer nothing, or another time.
+    // Planners with an injected fault answered nothing in the run, or later.
     const auto found = std::ranges::find_if(now, [&](const behaviors::PlanAnswer& answer) {
       return answer.planner == then.planner && answer.sequence == then.sequence;
     });

@@ -15,7 +15,7 @@ namespace footfall::lab {
 namespace {
 
 constexpr std::size_t kMostLines = 12;
-constexpr std::int64_t kFollow = 3000;  // ticks in which a difference is looked for in the floats
+constexpr std::int64_t kFollow = 3000;  // ticks to search for a difference visible in floats
 
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -130,7 +130,7 @@ class Verifier {
 
   const Log& log_;
   Replay& replay_;
-  std::vector<int> signal_;  // by the log's signals: index in the behavior's table, -1
+  std::vector<int> signal_;  // index in the behavior's table by the log's signals; -1 if absent
   bool same_table_ = true;
   std::size_t row_ = 0;
   ReplayReport report_;

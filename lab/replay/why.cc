@@ -14,7 +14,7 @@
 namespace footfall::lab {
 namespace {
 
-// One transition out of an active state, as it stood when the tick began.
+// One transition out of an active state, with the state of the machine at the start of the tick.
 struct Candidate {
   int transition = 0;
   std::vector<std::string> lines;
@@ -77,7 +77,7 @@ class Explanation {
     return info.reason.empty() ? text : text + " (" + info.reason + ")";
   }
 
-  // `on` by the events that came to their turn in this tick.
+  // Sets `on` from the events processed in this tick.
   void add_events(Candidate& candidate) const {
     if (!behavior_.transitions[at(candidate.transition)].has_event) return;
     std::string patterns;

@@ -19,8 +19,8 @@ using nlohmann::json;
 
 static_assert(kColours.size() == kMaxCompared);
 constexpr std::size_t kPathPoints = 2000;
-constexpr std::size_t kFootsteps = 200;  // the last ones of a run
-constexpr std::size_t kSettings = 20;    // lines of different settings that are shown
+constexpr std::size_t kFootsteps = 200;  // number shown, the last ones of a run
+constexpr std::size_t kSettings = 20;    // maximum number of differing settings shown
 
 char letter(std::size_t run) { return static_cast<char>('A' + run); }
 
@@ -28,7 +28,7 @@ std::string run_name(const Log& log) {
   return run_title(log) + (log.get("seed").empty() ? "" : ", seed " + log.get("seed"));
 }
 
-// Where a value of the axis is in a run: the row at or just before it; none outside of the run.
+// Row of a run at a time of the common axis: at or just before it; none outside of the run.
 class OnAxis {
  public:
   OnAxis(const Log& axis, const Log& log) : rows_(axis.rows(), kNone) {
@@ -36,7 +36,7 @@ class OnAxis {
     const double slack = log.rows() > 1 ? log.time[1] - log.time[0] : 0.0;
     std::size_t row = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const double t = axis.time[i] + 1e-9;  // the same tick is the same row
+      const double t = axis.time[i] + 1e-9;  // tolerance, so that the same tick is the same row
       while (row + 1 < log.rows() && log.time[row + 1] <= t) ++row;
       if (log.time[row] <= t && t < log.time[row] + slack + 2e-9) rows_[i] = row;
     }
@@ -58,7 +58,7 @@ struct Overlay {
   const std::vector<ComparedRun>& runs;
   std::vector<OnAxis> places;
 
-  // One signal of all runs that have it; nothing if it is zero throughout.
+  // Adds one signal of all runs that have it, unless it is zero throughout.
   void add(Section& section, const std::string& signal, const std::string& title,
            const std::string& unit) const {
     TimePlot plot{"cmp-" + signal, title, unit, {}, false};
@@ -71,7 +71,7 @@ struct Overlay {
     if (greatest(plot) > 0.0) section.plots.push_back(std::move(plot));
   }
 
-  // parts() over all runs.
+  // parts() over all runs, without duplicates.
   std::vector<std::string> names(std::string_view prefix, std::string_view suffix) const {
     std::vector<std::string> list;
     for (const ComparedRun& run : runs) {
@@ -131,7 +131,7 @@ Section forces(const Overlay& overlay) {
 }
 
 Section path(const std::vector<ComparedRun>& runs) {
-  Section section{"path", "Path from above", "Rings: where feet came down.", "", {}, {}};
+  Section section{"path", "Path from above", "Rings: touchdowns.", "", {}, {}};
   PlanePlot plot{"path-top", "Centre of mass and footsteps", "x, m", "y, m", {}, true, 0.1};
   for (std::size_t k = 0; k < runs.size(); ++k) {
     const Log& log = *runs[k].log;
@@ -155,7 +155,7 @@ Section path(const std::vector<ComparedRun>& runs) {
   return section;
 }
 
-// Numbers of a summary by their paths, in its order.
+// Collects the numbers of a summary by dotted path, in its order.
 void add_leaves(const json& value, const std::string& path, std::map<std::string, double>& leaves,
                 std::vector<std::string>& order) {
   if (value.is_object()) {
@@ -169,7 +169,7 @@ void add_leaves(const json& value, const std::string& path, std::map<std::string
   }
 }
 
-// Figures side by side; below each, how far it is from the first run's.
+// Metrics side by side, each with its difference from the first run.
 Section figures(const std::vector<ComparedRun>& runs) {
   Section section{"figures", "Figures", "In small type: the difference from A.", "", {}, {}};
   std::vector<std::map<std::string, double>> leaves(runs.size());
@@ -211,9 +211,9 @@ std::string table_of_moments(const std::string& name, const std::string& head,
 
 Section parting(const std::vector<ComparedRun>& runs) {
   Section section{"parting",
-                  "Where they part",
-                  "The first difference of each kind from A, in the order of their times, causes "
-                  "first. A row moves all plots there.",
+                  "First differences",
+                  "The first difference of each kind from A, ordered by time, causes "
+                  "first. A row moves all plots to its time.",
                   "",
                   {},
                   {}};
@@ -253,7 +253,7 @@ std::string toggles(const std::vector<ComparedRun>& runs) {
   return out + "</div>\n";
 }
 
-// The marks of all runs one after the other, each with its run's letter.
+// The marks of all runs, one run after the other, labelled with the run's letter.
 Section marks_of_all(const std::vector<ComparedRun>& runs) {
   Section all{"marks", "Edits, pushes and faults", "", "", {}, {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {

@@ -11,7 +11,7 @@ namespace {
 
 std::string colour(std::size_t index) { return kColours[index % kColours.size()]; }
 
-// A plain number where an angle is meant reads better as rad, and its second derivative as rad/s².
+// Displays a dimensionless angle as rad, and its second derivative as rad/s².
 std::string readable(const std::string& unit) {
   static const std::map<std::string, std::string> names = {
       {"", "rad"}, {"1/s", "rad/s"}, {"1/s^2", "rad/s²"}, {"m/s^2", "m/s²"}, {"Nm", "N m"}};
@@ -86,8 +86,8 @@ void add_task(const Log& log, const std::string& task, Section& section) {
 Section task_section(const Log& log) {
   Section section{"tasks",
                   "Task tracking",
-                  "Reference and measured value, error, and the acceleration that was commanded "
-                  "beside the one that the control model expects.",
+                  "Reference and measured value, error, and the commanded acceleration "
+                  "with the one predicted by the control model.",
                   "",
                   {},
                   {}};
@@ -96,9 +96,12 @@ Section task_section(const Log& log) {
 }
 
 Section posture_section(const Log& log) {
-  Section section{
-      "posture", "Orientation and height", "How far the torso is from upright and level.", "", {},
-      {}};
+  Section section{"posture",
+                  "Orientation and height",
+                  "Deviation of the torso from the upright posture.",
+                  "",
+                  {},
+                  {}};
   TimePlot tilt{"tilt", "Roll and pitch", "rad", {}, false};
   add_curve(log, tilt, "roll", "c0", "base.rpy.roll");
   add_curve(log, tilt, "pitch", "c1", "base.rpy.pitch");
@@ -130,7 +133,7 @@ Section posture_section(const Log& log) {
 Section torque_section(const Log& log) {
   Section section{"torques",
                   "Joint torques",
-                  "Knee torques over the last four steps show whether a contact change is smooth; "
+                  "Knee torques over the last four steps show whether contact changes are smooth; "
                   "below, every joint over the whole run.",
                   "",
                   {},

@@ -1,4 +1,4 @@
-// Reads a log for the report; see data.h.
+// Derives the report's data from a log; see data.h.
 #include "lab/report/data.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace footfall::lab {
 namespace {
 
-constexpr double kMinSwing = 0.06;  // s without contact that make a swing ("How we count" a step)
+constexpr double kMinSwing = 0.06;  // s, see docs/architecture.md, "How we count"
 
 std::string last_part(const std::string& path) {
   const std::size_t dot = path.rfind('.');
@@ -19,7 +19,8 @@ std::array<const std::vector<float>*, 2> xy(const Log& log, const std::string& s
   return {log.values(stem + ".x"), log.values(stem + ".y")};
 }
 
-// The column that says whether a foot carries: what the control law counts on, else its switch.
+// The column that tells whether a foot bears load: the contact set of the control law, else the
+// foot switch.
 const std::vector<float>* support_of(const Log& log, const std::string& foot) {
   const auto* support = log.values("support." + foot);
   return support != nullptr ? support : log.values("contact." + foot);
@@ -102,7 +103,7 @@ std::vector<SupportPhase> single_support(const Log& log) {
   for (const std::string& foot : feet) support.push_back(support_of(log, foot));
   int before = -1;
   for (std::size_t row = 0; row < log.rows(); ++row) {
-    int only = -1;  // the one foot that carries; -1: none, or several
+    int only = -1;  // the only supporting foot; -1: none, or several
     int count = 0;
     for (std::size_t i = 0; i < feet.size(); ++i) {
       if (support[i] != nullptr && (*support[i])[row] > 0.5F) {
@@ -137,7 +138,7 @@ std::vector<Touchdown> touchdowns(const Log& log) {
     const auto& contact = *log.values("contact." + foot);
     const auto point = xy(log, "point." + foot);
     if (point[0] == nullptr || point[1] == nullptr) continue;
-    std::size_t off = 0;  // row in which the foot left the ground
+    std::size_t off = 0;  // row at which the foot left the ground
     for (std::size_t row = 1; row < log.rows(); ++row) {
       if (contact[row] < 0.5F && contact[row - 1] >= 0.5F) off = row;
       if (contact[row] < 0.5F || contact[row - 1] >= 0.5F || off == 0) continue;

@@ -1,5 +1,5 @@
-// What a report reads out of a log before it draws: states, single-support phases, touchdowns, and
-// curves thinned so that no peak is lost.
+// Data that a report derives from a log: states, single-support phases, touchdowns, and curves
+// thinned such that every peak is kept.
 #pragma once
 
 #include <array>
@@ -14,41 +14,41 @@ namespace footfall::lab {
 
 using Point2 = std::array<double, 2>;
 
-// A time in which one atomic state was active.
+// An interval in which one atomic state was active.
 struct StateInterval {
   double begin = 0.0, end = 0.0;  // s
   int name = 0;                   // index into StateBands::names
 };
 struct StateBands {
-  std::vector<std::string> names;  // last parts of the paths: both images of a mirror share one
+  std::vector<std::string> names;  // last parts of the paths: both mirror images share one
   std::vector<StateInterval> intervals;
 };
-// Paths of the states, by the value of the signal `state`.
+// Paths of the states, indexed by the value of the signal `state`.
 std::vector<std::string> state_paths(const Log& log);
-// By the signal `state` and the run's `states`; empty without them.
+// From the signal `state` and the run's `states`; empty if absent.
 StateBands state_bands(const Log& log);
-// Path of the state that is active in a row, "" if unknown.
+// Path of the active state in a row, "" if unknown.
 std::string state_path(const Log& log, std::size_t row);
 
-// A time on one foot: rows [begin, end).
+// A single-support phase: rows [begin, end).
 struct SupportPhase {
   std::size_t begin = 0, end = 0;
   std::string foot;
 };
 std::vector<SupportPhase> single_support(const Log& log);
 
-// A foot that came down after a swing. Positions in m, world.
+// Touchdown of a foot after a swing. Positions in m, world.
 struct Touchdown {
   double time = 0.0;
   std::string foot;
   Point2 actual{};
-  Point2 target{};       // as last planned before
-  bool planned = false;  // there was a target
+  Point2 target{};       // last planned target
+  bool planned = false;  // whether there was a target
 };
 std::vector<Touchdown> touchdowns(const Log& log);
 
-// Columns of a planner: CoM position and velocity it predicts at the switch, and the foot's target.
-// Null where the log has none.
+// Columns of a planner: predicted CoM position and velocity at the switch, and the foot's target.
+// Null if the log has none.
 struct PlannerColumns {
   std::string name;
   std::array<const std::vector<float>*, 2> target{}, position{}, velocity{};
@@ -56,12 +56,12 @@ struct PlannerColumns {
 };
 std::vector<PlannerColumns> planners(const Log& log);
 
-// Names between `prefix` and `suffix` in the log's signals, each once, in order:
+// The parts of signal names between `prefix` and `suffix`, each once, in log order:
 // parts("contact.", "") gives the feet.
 std::vector<std::string> parts(const Log& log, std::string_view prefix, std::string_view suffix);
 
-// Rows [begin, end) of a log on a common time axis of at most `points` points: as they are if they
-// fit, else two for each bucket, which hold its least and greatest value in the order they came.
+// Rows [begin, end) of a log on a common time axis of at most `points` points. Thinned if
+// necessary: each bucket keeps its minimum and maximum in their order of time.
 class Grid {
  public:
   Grid(const Log& log, std::size_t begin, std::size_t end, std::size_t points);
@@ -71,11 +71,11 @@ class Grid {
   std::size_t end() const { return end_; }
 
  private:
-  std::size_t begin_, end_, buckets_;  // buckets_ 0: not thinned
+  std::size_t begin_, end_, buckets_;  // buckets_ 0: no thinning
   std::vector<double> time_;
 };
 
-// Root mean square and greatest magnitude over the rows from time `from` (s) on.
+// Root mean square and largest magnitude over the rows from time `from` (s) on.
 struct Spread {
   double rms = 0.0, max = 0.0;
   bool valid = false;

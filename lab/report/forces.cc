@@ -1,5 +1,4 @@
-// Sections of the report about contact: forces of the ground, how much of their friction cones they
-// use, internal forces.
+// Report sections on contact: ground forces, utilization of the friction cones, internal forces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 namespace footfall::lab {
 namespace {
 
-constexpr double kLoaded = 0.05;  // of the greatest normal force; below, a ratio says nothing
+constexpr double kLoaded = 0.05;  // of the largest normal force; meaningless ratios below
 constexpr std::size_t kConePoints = 1500;
 
 // Force of one foot, measured (`force.`) or predicted (`force_cmd.`).
@@ -30,7 +29,7 @@ struct Force {
   }
 };
 
-// |tangential| / (mu normal) while the foot is loaded: 1 is the cone's surface.
+// Friction utilization |tangential| / (mu normal) of a loaded foot; 1 is slip.
 std::vector<float> cone_use(const Force& force, double friction) {
   std::vector<float> out(force.z->size(), std::numeric_limits<float>::quiet_NaN());
   const double least = force.loaded();
@@ -52,7 +51,7 @@ PlaneCurve cone_points(const Force& force, const std::string& label, const char*
   return dots;
 }
 
-// The side view of the cone: what lies to the right of the line slips.
+// Side view of the friction cone: points to the right of the line slip.
 PlanePlot cone_plot(const Log& log, const std::string& foot, double friction) {
   PlanePlot plot{"cone-" + foot,
                  "Force in the friction cone, " + spaced(foot),
@@ -79,7 +78,7 @@ PlanePlot cone_plot(const Log& log, const std::string& foot, double friction) {
   return plot;
 }
 
-// One curve a foot, and the limit. Without the ground's friction the ratio itself.
+// One curve a foot, and the limit. If the ground's friction is unknown, the ratio itself.
 TimePlot use_plot(const Log& log, const std::vector<std::string>& feet, double friction) {
   const bool known = friction > 0.0;
   TimePlot plot{"cone-use",
@@ -107,7 +106,7 @@ TimePlot use_plot(const Log& log, const std::vector<std::string>& feet, double f
 Section force_section(const Log& log) {
   Section section{"forces",
                   "Contact and internal forces",
-                  "Of the ground on the robot, z up; dashed: as the control law predicts it. The "
+                  "Ground on robot, z up; dashed: predicted by the control law. The "
                   "cones take up for the normal.",
                   "",
                   {},

@@ -1,5 +1,4 @@
-// The report's marks: what reached the run from outside, and what went wrong in it, as lines in all
-// plots and as a list.
+// Event marks of the report: external inputs and faults, as lines in all plots and as a list.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,12 +20,12 @@ bool is_mark(const LoggedEvent& event) {
   return std::ranges::find(kMarkKinds, event.kind) != kMarkKinds.end();
 }
 
-// Values of parameters as the run goes on: what an edit changes them from.
+// Values of parameters over the run, to show the value before an edit.
 class Values {
  public:
   explicit Values(const Log& log) : log_(log), values_(log.parameter_values) {}
 
-  // Before a tick of the behavior; times only grow.
+  // Advances to just before a tick of the behavior; times must not decrease.
   void advance(std::int64_t tick) {
     for (; next_ < log_.edits.size() && log_.edits[next_].tick < tick; ++next_) {
       for (const auto& [slot, value] : log_.edits[next_].writes) {
@@ -58,7 +57,7 @@ class Values {
   std::size_t next_ = 0;
 };
 
-// `a = 1, raise b over 9 ticks` as `a: 0.5 → 1, raise b over 9 ticks`.
+// Adds old values: `a = 1, raise b over 9 ticks` becomes `a: 0.5 → 1, raise b over 9 ticks`.
 std::string with_values_before(std::string_view detail, const Values& values) {
   std::string out;
   while (!detail.empty()) {
@@ -82,7 +81,7 @@ struct Row {
   int count = 1;
 };
 
-// The same fault again and again is one row.
+// Repetitions of the same fault are one row.
 std::vector<Row> rows_of(const Log& log) {
   std::vector<Row> rows;
   Values values(log);
@@ -124,8 +123,8 @@ std::vector<PlotMark> run_marks(const Log& log) {
 Section mark_section(const Log& log) {
   Section section{"marks",
                   "Edits, pushes and faults",
-                  "What reached the run from outside, with the values before, and what went wrong. "
-                  "Every plot has a line there; a row moves all plots to it.",
+                  "External inputs with the previous values, and faults. "
+                  "Each has a line in every plot; its row moves all plots to it.",
                   "",
                   {},
                   {}};

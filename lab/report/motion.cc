@@ -1,5 +1,5 @@
-// Sections of the report about motion as a whole: the path from above, and a phase portrait a step
-// ([Kim16] Fig. 6: actual in blue, the planner's in red).
+// Report sections on overall motion: the path from above, and a phase portrait a step ([Kim16] Fig.
+// 6: actual in blue, the planner's in red).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,16 +13,16 @@ namespace footfall::lab {
 namespace {
 
 constexpr std::size_t kPathPoints = 4000;
-constexpr std::size_t kFootsteps = 200;  // the last ones, so that long runs stay readable
+constexpr std::size_t kFootsteps = 200;  // number shown, the last ones
 constexpr std::size_t kPortraits = 40;
 constexpr std::size_t kPortraitPoints = 60;
-constexpr double kMinPhase = 0.06;  // s on one foot that make a step
+constexpr double kMinPhase = 0.06;  // minimum duration of single support that counts as a step, s
 
 double at(const std::vector<float>& column, std::size_t row) {
   return static_cast<double>(column[row]);
 }
 
-// Phases that are steps: long enough.
+// Single-support phases that are long enough to be steps.
 std::vector<SupportPhase> step_phases(const Log& log) {
   std::vector<SupportPhase> phases = single_support(log);
   std::erase_if(phases, [&](const SupportPhase& phase) {
@@ -39,7 +39,7 @@ PlaneCurve com_path(const std::vector<float>& x, const std::vector<float>& y) {
   return path;
 }
 
-// Planner's rows at the end of each step: what it said last.
+// Adds the planner's last prediction at the end of each step.
 void add_plans(const Log& log, std::vector<PlaneCurve>& curves) {
   PlaneCurve predicted{"predicted centre of mass at the switch", "plan", Mark::cross, {}, 0.9};
   PlaneCurve targets{"foot targets", "plan", Mark::square, {}, 0.9};
@@ -62,7 +62,7 @@ void add_plans(const Log& log, std::vector<PlaneCurve>& curves) {
   curves.push_back(std::move(predicted));
 }
 
-// World to heading frame: as if the base had no yaw.
+// World to heading frame: rotates by -yaw.
 Point2 turned(double x, double y, double yaw) {
   return {std::cos(yaw) * x + std::sin(yaw) * y, -std::sin(yaw) * x + std::cos(yaw) * y};
 }
@@ -81,11 +81,11 @@ struct PortraitColumns {
 
 // The text beside the portraits for one step.
 struct StepFact {
-  double time = 0.0;  // s, of its end
+  double time = 0.0;  // s, end of the step
   std::string text;
 };
 
-// Picks one step of the portraits; report_keys.js.
+// Slider that selects one step of the portraits; see report_keys.js.
 std::string step_slider(const std::vector<StepFact>& facts) {
   nlohmann::json list = nlohmann::json::array();
   for (const StepFact& fact : facts) list.push_back({{"t", fact.time}, {"text", fact.text}});
@@ -177,7 +177,7 @@ class Portraits {
 Section path_section(const Log& log) {
   Section section{"path",
                   "Path from above",
-                  "The centre of mass and the footsteps, with what the planner expected.",
+                  "Centre of mass and footsteps, with the planner's predictions.",
                   "",
                   {},
                   {}};

@@ -1,4 +1,4 @@
-// See page.h.
+// HTML page template; see page.h.
 #include "lab/report/page.h"
 
 #include "lab/report/assets.h"

@@ -1,4 +1,4 @@
-// The HTML page that every report is in.
+// The HTML page common to all reports.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 namespace footfall::lab {
 
 struct ReportPage {
-  std::string title;     // text
+  std::string title;     // plain text
   std::string subtitle;  // HTML; likewise below
   std::string nav, body;
-  std::string css;          // the whole style sheet
+  std::string css;          // complete style sheet
   std::string data = "{}";  // JSON for the page's script
-  std::string library;      // script that the page's own needs
+  std::string library;      // script required by the page's own script
   std::string footer =
       "Drag in a plot to zoom, double-click for the whole run; press ? for keys. "
       "SI units, z up.";
 };
 
-// The template lab/report/web/report.html, filled.
+// Fills the template lab/report/web/report.html.
 std::string fill_page(const ReportPage& page);
 
-// A text with each {{name}} replaced by its value, by nothing if it has none; what is put in is not
+// Replaces each {{name}} in a text by its value, or by nothing if unknown; inserted text is not
 // searched again.
 std::string fill_template(std::string_view text,
                           const std::vector<std::pair<std::string_view, std::string>>& values);

@@ -1,4 +1,4 @@
-// Plots as data for the page's script, and what both ways of drawing share; see plot.h.
+// Plot data for the page's script, and functions shared with SVG drawing; see plot.h.
 #include "lab/report/plot.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace footfall::lab {
 namespace {
 
-// States of walking keep their colour in every report; others follow in order.
+// Well-known walking states have the same colour in every report; others follow in order.
 constexpr std::array<const char*, 6> kKnownStates = {"dual", "unload", "lift",
                                                      "land", "load",   "rise"};
 constexpr int kBandColours = 10;

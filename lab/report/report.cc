@@ -1,4 +1,4 @@
-// Puts the page together; see report.h.
+// Assembles the page; see report.h.
 #include "lab/report/report.h"
 
 #include <fmt/format.h>
@@ -12,10 +12,10 @@
 namespace footfall::lab {
 namespace {
 
-constexpr std::size_t kZoomPoints = 12000;  // four steps, every tick
+constexpr std::size_t kZoomPoints = 12000;  // four steps at every tick
 constexpr std::size_t kZoomSteps = 4;
 
-// Rows of the last steps, from one mark `step` of the counter to the end.
+// First row of the last steps, given by the step counter.
 std::size_t zoom_begin(const Log& log) {
   const auto* steps = log.values("steps");
   if (steps == nullptr || steps->empty()) return 0;
@@ -54,7 +54,7 @@ Section state_section(const ReportOptions& options) {
   Section section{"states", "State diagram", "", "", {}, {}};
   if (!options.diagram_svg.empty()) {
     section.lead =
-        "Time spent in each state, its share, and how often it was entered; the darker, the "
+        "Time spent in each state, its share, and the number of entries; the darker, the "
         "longer.";
     const std::size_t svg = std::min(options.diagram_svg.find("<svg"), options.diagram_svg.size());
     section.html =

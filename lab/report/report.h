@@ -1,4 +1,4 @@
-// The report of a run: one HTML page that needs no network, with plots, state bands, portraits and
+// The report of a run: one HTML page that works offline, with plots, state bands, portraits and
 // tables. After a run, from its log.
 #pragma once
 
@@ -15,32 +15,32 @@ struct ReportOptions {
   std::string summary_json;             // text of summary.json, may be empty
   std::string timing_json;              // text of timing.json, may be empty
   std::vector<std::uint8_t> strip_png;  // film strip, may be empty
-  std::string strip_note;               // why there is none, e.g. the renderer's error
+  std::string strip_note;               // why it is empty, e.g. the renderer's error
   std::string diagram_svg;              // state diagram, may be empty
-  std::string diagram_note;             // why there is none
-  bool static_plots = false;            // SVG even where the plotting library is built in
+  std::string diagram_note;             // why it is empty
+  bool static_plots = false;            // SVG even if the plotting library is built in
 };
 
-// The page. A log without rows gives a page without plots.
+// Returns the page; a log without rows gives a page without plots.
 std::string report_html(const Log& log, const ReportOptions& options);
 
-// Writes it. Throws std::runtime_error with one sentence that names the path.
+// Writes the page. Throws std::runtime_error with one sentence that names the path.
 void write_report(const Log& log, const std::string& path, const ReportOptions& options);
 
 // One of several runs in a comparison.
 struct ComparedRun {
   const Log* log = nullptr;
   std::string summary_json;  // may be empty
-  LogComparison parting;     // from the first run; of that one nothing
+  LogComparison parting;     // divergence from the first run; empty for the first run itself
 };
-// Two to six runs on one page: figures side by side, where they part, curves over each other, the
-// marks of all. The first is what the others are compared with.
+// Two to six runs on one page: metrics side by side, first differences, overlaid curves, marks of
+// all runs. The first run is the reference.
 std::string compare_html(const std::vector<ComparedRun>& runs, bool static_plots);
 inline constexpr std::size_t kMaxCompared = 6;
-// Throws as write_report().
+// Throws like write_report().
 void write_page(const std::string& page, const std::string& path);
 
-// The plotting library is built in; else plots are SVG.
+// Whether the plotting library is built in; otherwise plots are SVG.
 bool has_interactive_plots();
 
 }  // namespace footfall::lab

@@ -1,4 +1,4 @@
-// Sections become one page that needs nothing else; see sections.h.
+// Combines sections into one self-contained page; see sections.h.
 #include "lab/report/sections.h"
 
 #include <fmt/format.h>
@@ -71,7 +71,7 @@ void keep(Section& section, TimePlot plot) {
 }
 
 std::size_t run_points(const Log& log, std::size_t runs) {
-  constexpr std::size_t kPageBytes = 3'000'000, kBytes = 6;  // of a float as base64, rounded up
+  constexpr std::size_t kPageBytes = 3'000'000, kBytes = 6;  // per float in base64, rounded up
   constexpr std::size_t kMost = 6000, kLeast = 800;
   std::size_t curves = 0;
   for (const LoggedSignal& signal : log.signals) {

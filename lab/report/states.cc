@@ -1,4 +1,4 @@
-// Time spent in states, as a diagram; see states.h.
+// State diagram with the time spent in each state; see states.h.
 #include "lab/report/states.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ bool in_region(const behaviors::Diagram& diagram, int state) {
   return false;
 }
 
-// White to blue with the root of the share, so that short states still show.
+// White to blue with the square root of the share, so that short states remain visible.
 std::string tint(double share) {
   const auto blend = [&](double full) {
     return static_cast<int>(std::lround(255.0 + (full - 255.0) * std::sqrt(share)));
@@ -64,7 +64,7 @@ void add_state_use(const Log& log, behaviors::Diagram& diagram) {
     if (state.kind == Kind::history_shallow || state.kind == Kind::history_deep) continue;
     const StateUse use = state_use(log, state.path);
     if (use.visits == 0) {
-      // Of parallel regions only the first is in the log's state.
+      // For parallel regions, the log's state is the first region's.
       if (!in_region(diagram, s)) state.notes.emplace_back("never");
       continue;
     }

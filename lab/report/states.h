@@ -1,4 +1,4 @@
-// The state diagram of a run's behavior with the time that was spent in each state, for the report.
+// The state diagram of a run's behavior with the time spent in each state, for the report.
 #pragma once
 
 #include <string>
@@ -8,19 +8,20 @@
 
 namespace footfall::lab {
 
-// By a path and all below it, from the signal `state`: the first active atomic state, so that of
-// parallel regions only the first is seen.
+// Time and visits of a state and its descendants. From the signal `state`, which is the first
+// active atomic state: of parallel regions only the first one is seen.
 struct StateUse {
   double time = 0.0;  // s
   int visits = 0;
 };
 StateUse state_use(const Log& log, const std::string& path);
 
-// Writes share and visits into the states of a diagram that the log has seen, or could have: their
-// name line is followed by `12.3 s, 20.5 %, 173 visits`, or `never`.
+// Adds share and visits to all states of a diagram that the log can contain: the name is followed
+// by `12.3 s, 20.5 %, 173 visits`, or `never`.
 void add_state_use(const Log& log, behaviors::Diagram& diagram);
 
-// As a Graphviz graph, from the files in the log. Throws std::runtime_error if they do not load.
+// The diagram in Graphviz format, from the files in the log. Throws std::runtime_error if they do
+// not load.
 std::string state_graph(const Log& log);
 
 }  // namespace footfall::lab

@@ -1,4 +1,4 @@
-// Plots drawn as SVG: planes always, curves over time where the page has no plotting library.
+// Plots as SVG: planes always, curves over time if the page has no plotting library.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 // Time plots are stretched to the page's width: no text inside, and strokes that do not scale.
 constexpr double kTimeWidth = 1000.0, kTimeHeight = 200.0;
 constexpr std::size_t kTimePoints = 900;
-// Planes keep their shape, with text inside that is still readable when 300 px are left.
+// Planes keep their aspect ratio; their text is still readable at a width of 300 px.
 constexpr double kPlaneWidth = 440.0, kPlaneHeight = 320.0;
 constexpr double kLeft = 52.0, kRight = 12.0, kTop = 12.0, kBottom = 40.0;
 
@@ -25,7 +25,7 @@ struct Range {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  // Some room around what was added; a useful range even if nothing or one value was.
+  // Pads the range; gives a useful range even for no or one value.
   void pad(double least_span) {
     if (!(low <= high)) low = high = 0.0;
     const double need = std::max(least_span, 1e-12 * std::max(1.0, std::abs(high)));
@@ -46,7 +46,7 @@ std::string number(double value) {
   return fmt::format("{:.6g}", std::abs(value) < 1e-12 ? 0.0 : value);
 }
 
-// Steps of a polyline in one decimal, which is a tenth of a pixel.
+// Adds a polyline point with one decimal, a tenth of a pixel.
 void add_point(std::string& path, bool& pen_down, double x, double y) {
   if (!std::isfinite(x) || !std::isfinite(y)) {
     pen_down = false;
@@ -61,7 +61,7 @@ std::string swatch(const std::string& label, const std::string& colour, const st
                      escape_html(label));
 }
 
-// Maps a plane onto the picture, y upwards.
+// Maps a plane to picture coordinates, y upwards.
 struct PlaneMap {
   Range x, y;
   double width, height;
@@ -121,7 +121,7 @@ std::string plane_curve(const PlaneCurve& curve, const PlaneMap& map) {
       case Mark::line:
         add_point(path, pen_down, x, y);
         break;
-      case Mark::dot:  // a line of no length with round ends
+      case Mark::dot:  // a zero-length line with round caps
         path += fmt::format("M{:.1f} {:.1f}h0", x, y);
         break;
       case Mark::cross:
@@ -160,7 +160,7 @@ std::string rectangles(const Grid& grid, const StateBands& bands) {
   return out;
 }
 
-// Least and greatest of each bucket again, down to what a screen can show.
+// Thins again to minimum and maximum of each bucket, at screen resolution.
 std::string time_path(const std::vector<double>& time, const std::vector<float>& values,
                       const Range& y) {
   std::string path;

@@ -1,4 +1,4 @@
-// The report's cards and tables: summary, settings, events, timing.
+// Cards and tables of the report: summary, settings, events, timing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSettled = 2.0;  // s; errors count from here ("How we count")
+constexpr double kSettled = 2.0;  // s, see docs/architecture.md, "How we count"
 constexpr std::size_t kMaxEvents = 1000;
-constexpr std::size_t kMaxSetting = 300;  // characters of a setting that are shown
+constexpr std::size_t kMaxSetting = 300;  // maximum number of characters shown of a setting
 
 std::string card(const std::string& name, const std::string& value, const std::string& note = "",
                  const std::string& kind = "") {
@@ -34,13 +34,13 @@ std::string text_at(const json& object, const char* key) {
   return object[key].get<std::string>();
 }
 
-// A length or an angle with a unit that suits its size.
+// A length or an angle with a suitable unit.
 std::string measure(double value, const std::string& unit) {
   const auto [scale, name] = display_unit(unit, std::abs(value));
   return fmt::format("{:.3g} {}", value * scale, name);
 }
 
-// Error figures from the summary, else from the log.
+// Error metrics from the summary, else from the log.
 std::string error_card(const Log& log, const json& summary, const std::string& key) {
   const std::string unit = key == "height" ? "m" : "rad";
   auto rms = number_at(summary, "/error/" + key + "/rms");
@@ -70,8 +70,8 @@ std::string outcome_card(const Log& log, const json& summary) {
   const std::string why = text_at(cause, "text");
   if (fell || end == "fall") return card("outcome", "fell", why, "bad");
   if (end == "fault") return card("outcome", "stopped by a fault", why, "bad");
-  if (!log.complete) return card("outcome", "cut off", "the log has no proper end", "warn");
-  if (end == "stopped") return card("outcome", "ended by the behavior or by hand", "", "warn");
+  if (!log.complete) return card("outcome", "cut off", "the log is incomplete", "warn");
+  if (end == "stopped") return card("outcome", "ended by the behavior or by the user", "", "warn");
   return card("outcome", "no fall", end.empty() ? "" : "end: " + end, "good");
 }
 
@@ -81,7 +81,7 @@ void add_number(std::string& out, const json& summary, const char* pointer, cons
   if (value) out += card(name, measure(*value, unit), note);
 }
 
-// ` (worst left_knee 7.2 Nm)`, for the faults of a joint.
+// ` (worst left_knee 7.2 Nm)` for joint faults.
 std::string worst_place(const json& summary, const std::string& fault) {
   const json::json_pointer place = json::json_pointer("/worst_fault") / fault;
   if (!summary.contains(place) || !summary[place].is_object()) return {};
@@ -117,7 +117,7 @@ std::string time_card(const json& summary, const Log& log) {
               factor ? fmt::format("{:.1f} x real time", *factor) : "");
 }
 
-// Leaves of a JSON object as rows of a table.
+// Adds the leaves of a JSON object as table rows.
 void add_rows(const json& value, const std::string& path, std::string& out) {
   if (value.is_object()) {
     for (const auto& [key, item] : value.items()) {
@@ -131,8 +131,8 @@ void add_rows(const json& value, const std::string& path, std::string& out) {
   }
 }
 
-// {"edges_us": [n+1], "counts": [n]} as a curve of steps; the count is shown as its logarithm,
-// because the few late ticks are what one looks for.
+// {"edges_us": [n+1], "counts": [n]} as a step curve with logarithmic counts, because the few late
+// ticks matter most.
 std::optional<PlanePlot> histogram(const json& timing) {
   if (!timing.is_object() || !timing.contains("histogram")) return {};
   const json& data = timing["histogram"];
@@ -151,8 +151,8 @@ std::optional<PlanePlot> histogram(const json& timing) {
   return plot;
 }
 
-// [{"part": 0.99, "us": 15.2}, ...]: rows of a table, and a curve over the number of nines, with
-// the time as its logarithm, because the last thousandth is many times the median.
+// [{"part": 0.99, "us": 15.2}, ...] as table rows, and as a curve of the logarithm of time over the
+// number of nines, because the last thousandth is many times the median.
 std::optional<PlanePlot> percentiles(const json& timing, std::string& rows) {
   if (!timing.contains("percentiles") || !timing["percentiles"].is_array()) return {};
   PlanePlot plot{"tick-percentiles",
@@ -232,7 +232,7 @@ std::string settings_html(const Log& log) {
 Section event_section(const Log& log) {
   Section section{"events", "Events", "Transitions, marks, faults, plans and steps.", "", {}, {}};
   std::vector<LoggedEvent> events = log.events;
-  if (events.size() > kMaxEvents) {  // a planner that answers every tick would hide the rest
+  if (events.size() > kMaxEvents) {  // a planner may answer every tick
     std::erase_if(events, [](const LoggedEvent& event) { return event.kind == "plan"; });
     section.lead += " Plans are too many to list; the planner's plots have them.";
   }
@@ -268,7 +268,7 @@ Section event_section(const Log& log) {
 }
 
 Section timing_section(const std::string& timing_text) {
-  Section section{"timing", "Timing", "What a wall clock measured; it differs from run to run.",
+  Section section{"timing", "Timing", "Wall-clock measurements; they differ between runs.",
                   "",       {},       {}};
   const json timing = json::parse(timing_text, nullptr, false);
   if (!timing.is_object()) return section;

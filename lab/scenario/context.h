@@ -1,4 +1,4 @@
-// What the parts of the scenario loader share; see loader.h.
+// State shared by the parts of the scenario loader; see loader.h.
 #pragma once
 
 #include <memory>
@@ -16,25 +16,25 @@ namespace footfall::lab {
 struct ScenarioContext {
   ScenarioDescription& scenario;
   core::Diagnostics& diagnostics;
-  // How names of states are found in the behavior; null if it could not be loaded: then only the
-  // form of the file is checked.
+  // Resolves state names in the behavior; null if it could not be loaded, then only the form of the
+  // file is checked.
   std::unique_ptr<behaviors::LoadContext> names;
-  std::optional<std::vector<std::string>> bodies;  // of the robot's model, if it could be read
-  std::vector<std::string> functions;              // of `scripts`
+  std::optional<std::vector<std::string>> bodies;  // bodies of the robot's model, if readable
+  std::vector<std::string> functions;              // functions defined in `scripts`
 
   void error(core::Mark mark, std::string_view id, std::string text) {
     diagnostics.error(mark, id, std::move(text));
   }
 };
 
-// NAME beside the file in which it is written.
+// Path of NAME relative to the file that contains the node.
 std::string beside(const ScenarioContext& context, const core::YamlNode& node);
-// Exactly one of these keys: error missing-key at the map, misplaced-key at the second.
+// Requires exactly one of these keys: error missing-key at the map, misplaced-key at the second.
 bool expect_one_of(ScenarioContext& context, const core::YamlNode& map,
                    const std::vector<std::string>& keys);
-// A time in the run: not negative, not behind its end.
+// A time within the run: not negative, not after its end.
 std::optional<double> read_time_in_run(ScenarioContext& context, const core::YamlNode& node);
-// A time above zero.
+// A positive time.
 std::optional<double> read_duration(ScenarioContext& context, const core::YamlNode& node);
 
 void load_script(ScenarioContext& context, const core::YamlNode& node);        // script.cc

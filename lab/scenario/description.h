@@ -1,5 +1,5 @@
-// A scenario as its `scenario: 1` file says: which behavior runs on which robot in which world,
-// what happens to it from outside, and what is expected of it. Load time only.
+// A scenario of a `scenario: 1` file: which behavior runs on which robot in which world, external
+// events, and expectations. Load time only.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@
 
 namespace footfall::lab {
 
-// When an entry of the script happens: at a time, at a place in the run, or on an event.
+// Trigger of a script entry: a time, a place in the run, or an event.
 struct Moment {
   enum class Kind : std::uint8_t { time, place, event };
   Kind kind = Kind::time;
   double time = 0.0;        // s
   std::int64_t step = 0;    // from 1; 0: any
-  std::vector<int> states;  // any of these is active (left and right); empty: any
-  double phase = 0.0;       // of the state's, else the step's duration: 0 up to below 1
+  std::vector<int> states;  // at least one of these is active (left and right); empty: any
+  double phase = 0.0;       // fraction of the state's duration, else of the step's: [0, 1)
   std::string event;        // name or prefix (`fault.*`)
 };
 
@@ -34,11 +34,11 @@ struct ScriptedPush {
   double direction = 0.0;  // rad in the heading frame, 0 forward, pi/2 left
 };
 
-// New values of a parameter or gain, SI: of all its slots, or of one (`goal.y`).
+// New values of a parameter or gain, SI: of all its slots, or of one component (`goal.y`).
 struct NewValues {
   int parameter = 0;  // into Behavior::parameters
   std::vector<double> values;
-  int first = 0;  // which of the parameter's slots the first value is for
+  int first = 0;  // slot of the parameter that the first value is for
 };
 
 enum class InjectedFault : std::uint8_t {
@@ -52,21 +52,21 @@ struct ScriptEntry {
   core::Mark mark;
   Moment moment;
   std::optional<ScriptedPush> push;
-  std::vector<NewValues> edit;  // with `raise`, as one live edit
-  double over = 0.0;            // s, ramp of the edit
+  std::vector<NewValues> edit;  // applied as one live edit together with `raise`
+  double over = 0.0;            // s, ramp duration of the edit
   std::vector<NewValues> set;
   int raise = -1;  // into Behavior::events
   std::optional<InjectedFault> fault;
-  std::string hold;                // a body; empty: none
-  std::string call;                // a function of ScenarioDescription::scripts; empty: none
-  std::optional<double> duration;  // s, of fault or hold; none: to the end
+  std::string hold;                // body to hold; empty: none
+  std::string call;                // function of ScenarioDescription::scripts to call; empty: none
+  std::optional<double> duration;  // s, of a fault or hold; nullopt: to the end
 };
 
-// `max mean rms count` of a signal (or of its magnitude) over the time that is judged.
+// `max mean rms count` of a signal (or of its magnitude) over the judged time.
 struct Reduction {
-  std::string function;  // "max", or "max abs": of the magnitude
+  std::string function;  // "max"; "max abs" for the magnitude
   int signal = 0;        // into ScenarioDescription::signals
-  int value = 0;         // the signal that holds it, likewise
+  int value = 0;         // index of the signal that holds the result, likewise
 };
 
 struct Expectation {
@@ -74,25 +74,25 @@ struct Expectation {
   core::Mark mark;
   Kind kind = Kind::that;
   int expression = -1;      // into ScenarioDescription::expressions
-  std::vector<int> states;  // of the sequence
-  std::vector<int> ends;    // into kScenarioEnds: any of them
-  bool timed = false;       // a time in which it is judged was written
-  double from = 0.0;        // s, judged from here
+  std::vector<int> states;  // of a sequence
+  std::vector<int> ends;    // indices into kScenarioEnds, alternatives
+  bool timed = false;       // a time window is given
+  double from = 0.0;        // s, start of the window
   std::optional<double> to;
   std::optional<double> within;  // s
-  double part = 1.0;             // of the seeds in which it must hold
+  double part = 1.0;             // fraction of seeds in which it must hold
   std::string text;              // as written
 };
 
-// A recorded trace that a run must follow.
+// One signal of a golden trace that a run must follow.
 struct GoldenSignal {
   int signal = 0;          // into Behavior::signals
   double tolerance = 0.0;  // SI
 };
 struct GoldenSpec {
   core::Mark mark;
-  std::string path;    // of the CSV file
-  double rate = 50.0;  // Hz, of its rows
+  std::string path;    // path of the CSV file
+  double rate = 50.0;  // Hz, row rate
   std::vector<GoldenSignal> signals;
 };
 
@@ -100,9 +100,9 @@ struct ScenarioDescription {
   std::string name, doc, path;
   std::vector<std::string> labels;
   std::string behavior_name, behavior_path;
-  std::string robot;           // name or path as written; empty: the behavior's
+  std::string robot;           // name or path as written; empty: the behavior's robot
   std::string world = "flat";  // name or path as written
-  core::Mark world_mark;       // no line: not written
+  core::Mark world_mark;       // line 0 if not written
   std::vector<std::uint64_t> seeds{1};
   double duration = 0.0;  // s
   std::vector<ScriptEntry> script;
@@ -110,11 +110,11 @@ struct ScenarioDescription {
   std::vector<Expectation> expectations;
   std::optional<GoldenSpec> golden;
   std::unique_ptr<behaviors::Behavior> behavior;
-  core::SignalTable signals;  // the behavior's, then `steps` and those of the reductions
+  core::SignalTable signals;  // the behavior's signals, then `steps` and those of the statistics
   std::vector<Reduction> reductions;
   behaviors::ExpressionPool expressions;
-  std::vector<std::string> files;           // by core::Mark::file of what the scenario says
-  std::vector<std::string> behavior_files;  // likewise of what its behavior says
+  std::vector<std::string> files;           // files of its positions, by core::Mark::file
+  std::vector<std::string> behavior_files;  // of its behavior's positions
 };
 
 }  // namespace footfall::lab

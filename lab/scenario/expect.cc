@@ -1,4 +1,4 @@
-// `expect` of a scenario: conditions over runs, compiled against the behavior's signals.
+// `expect` of a scenario: conditions on runs, compiled against the behavior's signals.
 #include <fmt/format.h>
 
 #include "core/units/units.h"
@@ -10,7 +10,7 @@ namespace {
 
 using core::YamlNode;
 
-// The signal that holds a reduction, made at its first use.
+// The signal that holds a statistic, added on first use.
 int reduction_signal(ScenarioDescription& scenario, std::string_view function, int signal) {
   const core::SignalInfo of = scenario.signals.info(signal);
   const bool count = function == "count";
@@ -23,7 +23,7 @@ int reduction_signal(ScenarioDescription& scenario, std::string_view function, i
   return value;
 }
 
-// A condition; `whole`: it is judged over a time, so that reductions have a meaning.
+// Compiles a condition. `whole`: it is judged over a time window, so that statistics are allowed.
 int compile_condition(ScenarioContext& context, const YamlNode& node, bool whole) {
   if (!node.is_scalar() || node.scalar.empty()) {
     core::report_expected(node, "a condition", context.diagnostics);
@@ -114,7 +114,7 @@ void read_sequence(ScenarioContext& context, const YamlNode& node, Expectation& 
   }
 }
 
-// One way in which a run may end, or several.
+// One allowed end of the run, or several.
 void read_end(ScenarioContext& context, const YamlNode& node, Expectation& expectation) {
   expectation.kind = Expectation::Kind::end;
   const auto take = [&](const YamlNode& item) {

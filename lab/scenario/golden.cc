@@ -1,4 +1,4 @@
-// `golden` of a scenario: which trace, and how near a run must stay to it.
+// `golden` of a scenario: the trace and the tolerances of a run relative to it.
 #include <fmt/format.h>
 
 #include <filesystem>

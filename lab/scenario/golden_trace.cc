@@ -1,4 +1,4 @@
-// Golden traces as text, and the comparison; see golden_trace.h.
+// Reads, writes and compares golden traces; see golden_trace.h.
 #include "lab/scenario/golden_trace.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ std::vector<std::string> csv_fields(const std::string& line) {
   return fields;
 }
 
-// An empty field is a signal without a value.
+// An empty field means that the signal has no value.
 double number_in(const std::string& text, const std::string& where) {
   if (text.empty()) return std::numeric_limits<double>::quiet_NaN();
   double value = 0.0;
@@ -37,7 +37,7 @@ double number_in(const std::string& text, const std::string& where) {
   throw std::runtime_error(where + ": error: expected a number, got '" + text + "'");
 }
 
-// Decimals that show a hundredth of the tolerance.
+// Number of decimals that resolves a hundredth of the tolerance.
 int decimals(double tolerance) {
   return std::clamp(static_cast<int>(std::ceil(2.0 - std::log10(tolerance) - 1e-9)), 0, 15);
 }
@@ -102,7 +102,7 @@ void write_golden(const std::string& path, const GoldenSpec& spec, const GoldenT
 
 std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,
                            const GoldenTrace& expected, const GoldenTrace& got) {
-  std::vector<std::size_t> column;  // of the expected trace, by signal of this one
+  std::vector<std::size_t> column;  // column in the expected trace, by signal of this trace
   for (const std::string& name : got.signals) {
     const auto found = std::ranges::find(expected.signals, name);
     if (found == expected.signals.end()) return fmt::format("the trace has no signal '{}'", name);
@@ -120,7 +120,7 @@ std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& sign
       const double a = have.values[k], b = want.values[column[k]];
       const double tolerance = spec.signals[k].tolerance;
       if (std::isnan(a) && std::isnan(b)) continue;
-      // What the file rounds away is not the run's.
+      // Tolerate the rounding of the file, too.
       if (std::abs(a - b) <= tolerance + 0.5 * std::pow(10.0, -decimals(tolerance))) continue;
       const std::string unit = core::unit_text(signals.info(spec.signals[k].signal).dimension);
       return fmt::format("{} at {:.4f} s in {}: got {}, expected {} (in {}), tolerance {}",

@@ -1,5 +1,5 @@
-// A golden trace: some signals of a run at a low rate, as a CSV file that people can read and
-// compare line by line: `time,state,SIGNAL,...`, SI, an empty field where a signal has no value.
+// A golden trace: some signals of a run at a low rate, as a CSV file that can be read and compared
+// line by line: `time,state,SIGNAL,...`, SI, an empty field where a signal has no value.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +22,19 @@ struct GoldenTrace {
   std::vector<GoldenRow> rows;
 };
 
-// Throws std::runtime_error `PATH:LINE: error: ...` if the file is not that.
+// Throws std::runtime_error `PATH:LINE: error: ...` if the file is malformed.
 GoldenTrace read_golden(const std::string& path);
-// With as many digits as the tolerances need: a hundredth of each. Whole or not at all; throws
-// std::runtime_error if it cannot be written.
+// Writes as many digits as needed for a hundredth of each tolerance. Atomic; throws
+// std::runtime_error if the file cannot be written.
 void write_golden(const std::string& path, const GoldenSpec& spec, const GoldenTrace& trace);
 
-// The first value beyond its tolerance: which signal, when, in which state, what it is and was to
-// be; empty if there is none. Signals that only one of the two has and a different length are
+// Describes the first value beyond its tolerance: signal, time, state, actual and expected value;
+// empty if there is none. Signals that only one of the two has and a different length are
 // differences, too.
 std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,
                            const GoldenTrace& expected, const GoldenTrace& got);
 
-// Gathers the trace of a run, after each tick's compute().
+// Records the trace of a run, after each tick's compute().
 class GoldenRecorder {
  public:
   GoldenRecorder(const GoldenSpec& spec, const engine::ControlLoop& loop);
@@ -44,7 +44,7 @@ class GoldenRecorder {
  private:
   const GoldenSpec& spec_;
   const engine::ControlLoop& loop_;
-  std::int64_t every_;  // ticks
+  std::int64_t every_;  // ticks per row
   GoldenTrace trace_;
 };
 

@@ -1,5 +1,5 @@
-// A `scenario: 1` file as data: every map with its keys, every list of words. The loader reads its
-// names from here, the JSON Schema and docs/reference.md are printed from here.
+// The format of a `scenario: 1` file as data: every map with its keys, every list of words. Used by
+// the loader, the JSON Schema and docs/reference.md.
 #pragma once
 
 #include "core/yaml/key_table.h"
@@ -14,7 +14,7 @@ extern const core::KeyTable kExpectationKeys;
 extern const core::KeyTable kGoldenKeys;
 extern const std::span<const core::WordSpec> kInjectedFaults;  // in the order of InjectedFault
 
-extern const std::span<const core::WordSpec> kScenarioEnds;  // of an `end:` expectation
+extern const std::span<const core::WordSpec> kScenarioEnds;  // values of an `end:` expectation
 
 extern const core::FileTable kScenarioFile;
 

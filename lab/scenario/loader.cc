@@ -1,4 +1,4 @@
-// The head of a scenario file: what runs where, how often and how long; see loader.h.
+// The main part of a scenario file: behavior, robot, world, seeds and duration; see loader.h.
 #include "lab/scenario/loader.h"
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ std::string find_behavior(const ScenarioContext& context, const YamlNode& node,
   return found == candidates.end() ? std::string() : *found;
 }
 
-// Errors of another file, at their own places. Its warnings are for its own check.
+// Adds the errors of another file, at their own positions. Its warnings belong to its own check.
 void take_errors(ScenarioContext& context, const core::Diagnostics& from) {
   for (core::Diagnostic item : from.sorted()) {
     if (item.severity != core::Severity::error) continue;
@@ -54,7 +54,7 @@ void take_errors(ScenarioContext& context, const core::Diagnostics& from) {
   }
 }
 
-// The robot's file if the scenario names one; false after an error.
+// Finds the robot's file if the scenario names one; false after an error.
 bool find_robot(ScenarioContext& context, const YamlNode& root,
                 const std::vector<std::string>& search, std::string& file) {
   const YamlNode* node = root.find("robot");
@@ -71,7 +71,7 @@ bool find_robot(ScenarioContext& context, const YamlNode& root,
   return false;
 }
 
-// The behavior with its signals, and what of them only a run as a whole has.
+// Loads the behavior with its signals, and adds the signals that only a complete run has.
 void load_named_behavior(ScenarioContext& context, const YamlNode& root,
                          const ScenarioOptions& given) {
   const std::vector<std::string>& search = given.search;
@@ -221,7 +221,7 @@ bool expect_one_of(ScenarioContext& context, const YamlNode& map,
     if (std::ranges::find(keys, entry.key) == keys.end()) continue;
     if (!first.empty()) {
       context.error(entry.key_mark, "misplaced-key",
-                    fmt::format("'{}' beside '{}': one of them is meant", entry.key, first));
+                    fmt::format("'{}' beside '{}': only one is allowed", entry.key, first));
       return false;
     }
     first = entry.key;

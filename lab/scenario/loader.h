@@ -1,5 +1,5 @@
-// From a scenario file to a ScenarioDescription, every name checked against what it names. Load
-// time only; running scenarios is not here.
+// Loads a scenario file into a ScenarioDescription and checks every name. Load time only; does not
+// run scenarios.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@
 namespace footfall::lab {
 
 struct ScenarioOptions {
-  // Folders holding robots/NAME/robot.yaml and behaviors/library/NAME.yaml.
+  // Folders with robots/NAME/robot.yaml and behaviors/library/NAME.yaml.
   std::vector<std::string> search;
-  // NAME=VALUE of the behavior, as --set has them: instead of what its file says.
+  // Behavior values NAME=VALUE, as with --set; they replace the file's values.
   std::vector<std::pair<std::string, std::string>> set{};
 };
 
-// Whether a file's first key, or its base's, is `scenario`; false if it cannot be read.
+// Whether the first key of the file or its base is `scenario`; false if unreadable.
 bool is_scenario_file(const std::string& path);
 
-// Problems go to diagnostics, errors of the behavior too; the result is meaningful only without
-// errors. The world is left to who knows worlds: see ScenarioDescription::world.
+// Adds problems to diagnostics, including errors of the behavior; the result is valid only without
+// errors. The world is not loaded here: see ScenarioDescription::world.
 ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,
                                   core::Diagnostics& diagnostics);
 

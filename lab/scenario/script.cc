@@ -1,4 +1,4 @@
-// `script` of a scenario: what happens to the robot from outside, and when.
+// `script` of a scenario: external events and their times.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using behaviors::Behavior;
 using behaviors::ParameterInfo;
 using core::YamlNode;
 
-// `lift` is the state of this name on the left and on the right.
+// A name such as `lift` selects the states of this name on the left and on the right.
 std::vector<int> states_named(ScenarioContext& context, const YamlNode& node) {
   if (!core::expect_scalar(node, "the name of a state", context.diagnostics)) return {};
   if (context.names == nullptr) return {};
@@ -140,7 +140,7 @@ ScriptedPush read_push(ScenarioContext& context, const YamlNode& node) {
   return push;
 }
 
-// A parameter that no unit was written for takes any, a planner's goal a length.
+// A parameter without unit accepts any quantity, a planner's goal a length.
 std::optional<double> read_new_value(ScenarioContext& context, const YamlNode& node,
                                      const ParameterInfo& info) {
   core::Dimension dimension = info.dimension;
@@ -188,7 +188,7 @@ std::vector<double> read_values(ScenarioContext& context, const YamlNode& node,
   return values;
 }
 
-// Parameters and gains by name; a live edit changes only what is live.
+// Parameters and gains by name; a live edit may change only live parameters.
 std::vector<NewValues> read_changes(ScenarioContext& context, const YamlNode& node, bool edit) {
   std::vector<NewValues> changes;
   if (!core::expect_map(node, "new values by name: {NAME: VALUE}", context.diagnostics)) return {};
@@ -213,7 +213,7 @@ std::vector<NewValues> read_changes(ScenarioContext& context, const YamlNode& no
                                 info.name));
       continue;
     }
-    if (component >= 0) {  // `goal.y` is read as a parameter of one value
+    if (component >= 0) {  // `goal.y` is read like a scalar parameter
       info.name = entry.key;
       info.size = 1;
     }
@@ -222,7 +222,7 @@ std::vector<NewValues> read_changes(ScenarioContext& context, const YamlNode& no
   return changes;
 }
 
-// `over` belongs to edits, `for` to what lasts.
+// `over` applies to edits, `for` to entries with a duration.
 void read_lasting(ScenarioContext& context, const YamlNode& node, ScriptEntry& entry) {
   const auto misplaced = [&](const char* key, const char* beside) {
     for (const core::YamlEntry& written : node.entries) {

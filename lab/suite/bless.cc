@@ -1,4 +1,4 @@
-// Differences of traces, and their blessing; see bless.h.
+// Compares traces and updates golden ones; see bless.h.
 #include "lab/suite/bless.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ std::size_t column_of(const GoldenTrace& trace, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(trace.signals, name) - trace.signals.begin());
 }
 
-// The largest difference of one signal over the rows that both have.
+// The largest difference of one signal over the rows that both traces have.
 TraceDiff::Signal compare_signal(const GoldenTrace& before, const GoldenTrace& after,
                                  const std::string& name) {
   TraceDiff::Signal out;
@@ -42,7 +42,7 @@ TraceDiff::Signal compare_signal(const GoldenTrace& before, const GoldenTrace& a
   return out;
 }
 
-// Range of a signal's values: what a difference is large against.
+// Range of a signal's values, to which differences are related.
 double scale_of(const GoldenTrace& trace, const std::string& name) {
   const std::size_t k = column_of(trace, name);
   if (k == trace.signals.size()) return 1.0;
@@ -74,7 +74,7 @@ std::string diff_text(const TraceDiff& diff) {
   return text;
 }
 
-// Why a run's trace may not become golden.
+// Reason why a run's trace must not become golden; empty if it may.
 std::string objection(const SuiteRun& run) {
   for (const Observation& seen : run.observations) {
     if (!seen.passed) return "an expectation did not hold in it";
@@ -84,7 +84,7 @@ std::string objection(const SuiteRun& run) {
   return whole ? "" : fmt::format("{}: {}", verdict_name(run.verdict), run.why);
 }
 
-// Nothing if the trace is what the golden one is.
+// nullopt if the trace equals the golden one.
 std::optional<Blessing> blessing_of(const Suite& suite, const SuiteRun& run) {
   const SuiteScenario& scenario = suite.scenarios[run.scenario];
   Blessing out{scenario.name, run.folder + "/golden.csv", scenario.golden, "", objection(run)};
@@ -136,7 +136,7 @@ std::vector<Blessing> blessings(const Suite& suite) {
   std::vector<Blessing> list;
   for (const SuiteRun& run : suite.runs) {
     const SuiteScenario& scenario = suite.scenarios[run.scenario];
-    // The trace is of the first seed.
+    // Golden traces belong to the first seed.
     if (scenario.golden.empty() || run.seed != scenario.seeds.front()) continue;
     if (auto blessing = blessing_of(suite, run)) list.push_back(std::move(*blessing));
   }

@@ -1,4 +1,4 @@
-// Makes the traces of a suite's runs the golden ones: what would change is shown first.
+// Makes the traces of a suite's runs the new golden traces, after showing the changes.
 #pragma once
 
 #include <string>
@@ -9,31 +9,31 @@
 
 namespace footfall::lab {
 
-// How a trace differs from another, by its signals and states.
+// Difference between two traces, by signals and states.
 struct TraceDiff {
   struct Signal {
     std::string name;
     double largest = 0.0;  // magnitude of the difference, SI
-    double time = 0.0;     // s, of it
+    double time = 0.0;     // s, time of the largest difference
     bool only_before = false, only_after = false;
   };
-  std::vector<Signal> signals;               // that differ, the largest part of its scale first
-  std::size_t states = 0;                    // rows in other states
-  double first_state = 0.0;                  // s, of the first of them
-  double end_before = 0.0, end_after = 0.0;  // s, of the last rows
+  std::vector<Signal> signals;               // differing signals, largest relative difference first
+  std::size_t states = 0;                    // number of rows in different states
+  double first_state = 0.0;                  // s, time of the first such row
+  double end_before = 0.0, end_after = 0.0;  // s, end times
   bool same() const { return signals.empty() && states == 0 && end_before == end_after; }
 };
 TraceDiff diff_traces(const GoldenTrace& before, const GoldenTrace& after);
 
-// One trace that would be written.
+// One golden trace to be replaced.
 struct Blessing {
   std::string scenario, from, to;  // from: the run's trace; to: the golden file
-  std::string text;                // the difference for people, lines
-  std::string refused;             // why it may not become golden; empty: it may
+  std::string text;                // description of the difference, several lines
+  std::string refused;             // why it must not become golden; empty if it may
 };
-// Those of the suite's runs with a golden trace that differ from it, or whose run is not good.
+// Traces that differ from their golden trace, and those of unsuccessful runs.
 std::vector<Blessing> blessings(const Suite& suite);
-// Copies it beside and renames. Throws std::runtime_error.
+// Copies to a temporary file and renames it. Throws std::runtime_error.
 void bless(const Blessing& blessing);
 
 }  // namespace footfall::lab

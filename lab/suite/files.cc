@@ -1,4 +1,4 @@
-// Finding and picking scenario files; see files.h.
+// Finds and selects scenario files; see files.h.
 #include "lab/suite/files.h"
 
 #include <fmt/format.h>
@@ -75,7 +75,7 @@ SuiteScenario load_one(const std::string& path, const std::vector<std::string>& 
   return out;
 }
 
-// Two files may hold scenarios of one name: then their paths tell them apart.
+// Scenarios with the same name in different files are identified by their paths.
 void make_names_unique(std::vector<SuiteScenario>& scenarios) {
   std::multiset<std::string> names;
   for (const SuiteScenario& scenario : scenarios) names.insert(scenario.name);
@@ -95,7 +95,7 @@ bool is_selected(const SuiteScenario& scenario, const SuiteSelection& selection)
     return std::ranges::find(list, word) != list.end();
   };
   if (!selection.paths.empty() && !among(selection.paths, scenario.path)) return false;
-  // What a broken file's labels are is not known: it is not passed over.
+  // The labels of a file with errors are unknown, so it is always selected.
   return selection.labels.empty() || !scenario.errors.empty() ||
          std::ranges::any_of(scenario.labels,
                              [&](const auto& l) { return among(selection.labels, l); });
@@ -104,7 +104,8 @@ bool is_selected(const SuiteScenario& scenario, const SuiteSelection& selection)
 }  // namespace
 
 std::string first_key(const std::string& path, const std::vector<std::string>& bases) {
-  // A word at the start of a line is enough: a parse would double the time that a large file takes.
+  // Check only whether a line begins with the word: parsing would double the load time of large
+  // files.
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
     const std::size_t colon = line.find(':');
@@ -161,7 +162,7 @@ std::vector<SuiteScenario> load_suite(const std::vector<std::string>& files,
 
 std::vector<SuiteScenario> shard_of(std::vector<SuiteScenario> scenarios, int shard, int shards) {
   if (shards <= 1) return scenarios;
-  // The longest first, each to the part that has least.
+  // Longest first, each to the shard with the shortest total.
   std::vector<std::size_t> order(scenarios.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto cost = [&scenarios](std::size_t i) {

@@ -1,4 +1,4 @@
-// A suite's results for machines: JUnit XML and JSON; see suite.h.
+// Machine-readable results of a suite: JUnit XML and JSON; see suite.h.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ std::string xml(const std::string& text) {
   return out;
 }
 
-// A `failure` or `error` in a test case, or nothing for an empty text.
+// A `failure` or `error` element of a test case; nothing for an empty text.
 std::string test_case(const std::string& suite, const std::string& name, double seconds,
                       const char* kind, const std::string& message, const std::string& text) {
   std::string out = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"",
@@ -41,7 +41,7 @@ struct Counts {
   std::size_t tests = 0, failures = 0, errors = 0;
 };
 
-// The test case of the runs as such: that they came to an end.
+// The test case for the runs themselves: that they all ended normally.
 std::string runs_case(const Suite& suite, std::size_t s, Counts& counts) {
   const SuiteScenario& scenario = suite.scenarios[s];
   const ScenarioResult& result = suite.results[s];

@@ -1,4 +1,4 @@
-// From a child's output to a verdict, from verdicts to a judgement; see run.h.
+// Reads verdicts from children's output and judges expectations over seeds; see run.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::string last_lines(const std::string& text, std::size_t lines) {
   return text.substr(begin + (begin < text.size() && text[begin] == '\n' ? 1 : 0));
 }
 
-// The object on the last line that is not empty.
+// The JSON object on the last non-empty line.
 Parsed last_object(const std::string& out) {
   std::size_t end = out.find_last_not_of(" \n\r\t");
   if (end == std::string::npos) return {};
@@ -50,7 +50,7 @@ std::optional<double> number_of(const Parsed& map, const char* key) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// Nothing if it is not an observation.
+// nullopt if malformed.
 std::optional<Observation> read_observation(const Parsed& item) {
   if (!item.is_object() || !item.contains("passed") || !item["passed"].is_boolean()) return {};
   Observation out;
@@ -72,7 +72,7 @@ std::string misfit(const Parsed& object, const SuiteScenario& scenario, const Su
   if (seed != object.end() && *seed != run.seed) return "its result is of another seed";
   const auto list = object.find("expectations");
   if (list == object.end() || !list->is_array() || list->size() != scenario.expectations.size()) {
-    return fmt::format("its result does not speak of the {} expectations",
+    return fmt::format("its result does not contain the {} expectations",
                        scenario.expectations.size());
   }
   return "";
@@ -86,7 +86,7 @@ void read_object(const Parsed& object, int exit_code, SuiteRun& run) {
     if (!observation) {
       run.observations.clear();
       run.verdict = Verdict::bad_output;
-      run.why = "an expectation in its result cannot be read";
+      run.why = "an expectation in its result is malformed";
       return;
     }
     all = all && observation->passed;
@@ -96,7 +96,7 @@ void read_object(const Parsed& object, int exit_code, SuiteRun& run) {
   run.verdict = passed ? Verdict::passed : Verdict::failed;
   if (passed && exit_code != 0) {
     run.verdict = Verdict::bad_output;
-    run.why = fmt::format("it says that it passed, with exit code {}", exit_code);
+    run.why = fmt::format("its result is `passed`, its exit code {}", exit_code);
   } else if (!passed && all) {
     const std::string why = text_of(object, "why");
     run.why = !why.empty() ? why : "the run ended by " + (run.end.empty() ? "failing" : run.end);
@@ -192,7 +192,7 @@ ScenarioResult judge(const Suite& suite, std::size_t scenario) {
   result.passed = what.errors.empty() && result.complete && result.broken.empty();
   for (std::size_t e = 0; e < result.judgements.size(); ++e) {
     Judgement& judgement = result.judgements[e];
-    // 0.95 * 20 is not exactly 19: half a run in a million is nothing.
+    // Tolerates rounding: 0.95 * 20 is not exactly 19.
     const double needed = what.expectations[e].part * static_cast<double>(judgement.of) - 1e-6;
     judgement.passed = static_cast<double>(judgement.held) >= needed;
     result.passed = result.passed && judgement.passed;

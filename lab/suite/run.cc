@@ -16,12 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A run that is slower than this has stopped: it is about ten times as fast as the clock.
+// A run slower than this hangs: simulation normally runs about ten times as fast as real time.
 constexpr double kTimeoutBase = 60.0, kTimeoutPerSecond = 3.0;
 constexpr double kReportTimeout = 120.0;                   // s
-constexpr double kReportBefore = 1.5, kReportAfter = 0.5;  // s around the moment
+constexpr double kReportBefore = 1.5, kReportAfter = 0.5;  // s before and after the failure
 
-// The name as the name of a folder.
+// The name converted to a folder name.
 std::string folder_name(std::string name) {
   for (char& c : name) {
     if (c == '/' || c == '\\') c = '.';
@@ -59,14 +59,14 @@ void remove_folder(const std::string& folder) {
   fs::remove_all(folder, ignored);
 }
 
-// The folder of a scenario, if it is empty. Only while none of its runs is under way: a run that
-// is just making its own folder in it would find it gone.
+// Removes a scenario's folder if it is empty. Only while none of its runs is active, because a run
+// that is creating its own folder in it would fail.
 void remove_parent(const std::string& folder) {
   std::error_code ignored;
   fs::remove(fs::path(folder).parent_path(), ignored);
 }
 
-// Counts runs, tells of scenarios in their order.
+// Counts finished runs and reports scenarios in order.
 class Session {
  public:
   Session(Suite& suite, const SuiteSettings& settings) : suite_(suite), settings_(settings) {
@@ -112,8 +112,8 @@ class Session {
   Suite& suite_;
   const SuiteSettings& settings_;
   SuiteProgress progress_;
-  std::vector<std::size_t> left_;  // runs of each scenario that are not done
-  std::size_t next_ = 0;           // the first scenario that is not judged
+  std::vector<std::size_t> left_;  // unfinished runs of each scenario
+  std::size_t next_ = 0;           // first scenario not yet judged
 };
 
 }  // namespace
@@ -129,7 +129,7 @@ void run_suite(Suite& suite, const SuiteSettings& settings) {
   list_runs(suite, settings);
   std::vector<Command> commands;
   for (const SuiteRun& run : suite.runs) {
-    remove_folder(run.folder);  // a log of an earlier session is not this run's
+    remove_folder(run.folder);  // remove the log of an earlier session
     commands.push_back(command_of(suite.scenarios[run.scenario], run, settings));
   }
   Session session(suite, settings);

@@ -1,4 +1,4 @@
-// Runs a suite: one child process for each scenario and seed, and judges what they say.
+// Runs a suite: one child process for each scenario and seed, and judges their results.
 #pragma once
 
 #include <atomic>
@@ -18,30 +18,30 @@ struct SuiteProgress {
 };
 
 struct SuiteSettings {
-  std::string program;  // that runs a scenario: `PROGRAM run FILE --seed N ...`
-  std::string out;      // folder of logs: OUT/NAME/seed-N
+  std::string program;  // executable; called as `PROGRAM run FILE --seed N ...`
+  std::string out;      // folder of the logs: OUT/NAME/seed-N
   int jobs = 1;
-  double timeout = 0.0;                     // s of wall time; 0: by the scenario's duration
-  bool keep = false;                        // keeps the logs of runs that passed
+  double timeout = 0.0;                     // s of wall time; 0: from the scenario's duration
+  bool keep = false;                        // keep the logs of passed runs
   const std::atomic<bool>* stop = nullptr;  // set by Ctrl-C
   std::function<void(const SuiteProgress&)> progress;
-  // Called in the order of the scenarios, as soon as all before it are done, too.
+  // Called in scenario order, once the scenario and all earlier ones are done.
   std::function<void(const Suite&, std::size_t)> scenario_done;
 };
 
-// Fills runs, results and coverage of a suite whose scenarios are loaded. Throws std::runtime_error
-// if the folder of logs cannot be made.
+// Fills runs, results and coverage of a suite with loaded scenarios. Throws std::runtime_error if
+// the folder of the logs cannot be made.
 void run_suite(Suite& suite, const SuiteSettings& settings);
 
-// What a child's end and output amount to; observations and verdict of `run` are filled, its
-// coverage is added to `coverage`.
+// Interprets a child's exit and output; fills observations and verdict of `run` and adds its
+// coverage to `coverage`.
 void read_result(const ProcessResult& result, const SuiteScenario& scenario, SuiteRun& run,
                  Coverage& coverage);
-// Over all runs of a scenario.
+// Judges the expectations over all runs of a scenario.
 ScenarioResult judge(const Suite& suite, std::size_t scenario);
 
-// Writes the report of the first failures of each scenario, around the moment, in children too: at
-// most `each` of a scenario.
+// Writes reports of the first failures of each scenario, for a window around the failure, also in
+// child processes: at most `each` per scenario.
 void write_failure_reports(Suite& suite, const SuiteSettings& settings, std::size_t each);
 
 }  // namespace footfall::lab

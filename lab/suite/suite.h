@@ -1,5 +1,5 @@
-// A suite: scenarios that are run as tests, and what came of them. One run is one scenario with one
-// seed; expectations are judged over all seeds of a scenario.
+// A suite: scenarios run as tests, and their results. One run is one scenario with one seed;
+// expectations are judged over all seeds of a scenario.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,23 @@
 
 namespace footfall::lab {
 
-// An expectation as the runner must know it.
+// The data of an expectation that the runner needs.
 struct SuiteExpectation {
-  std::string text;   // as written, with its window
+  std::string text;   // as written, with its time window
   std::string place;  // file:line:column
-  double part = 1.0;  // of the seeds in which it must hold
+  double part = 1.0;  // fraction of seeds in which it must hold
 };
 
 struct SuiteScenario {
-  std::string path;  // as it was found
+  std::string path;  // path under which it was found
   std::string name;  // unique in the suite
   std::vector<std::string> labels;
   std::vector<std::uint64_t> seeds;
   double duration = 0.0;  // s of simulated time
   std::vector<SuiteExpectation> expectations;
-  std::string golden;  // path of the trace that the first seed must follow; empty: none
-  std::string errors;  // of the file; if there are any nothing is run
-  std::shared_ptr<const CoverageMap> map;  // of its behavior
+  std::string golden;  // path of the golden trace for the first seed; empty: none
+  std::string errors;  // load errors; if not empty, the scenario is not run
+  std::shared_ptr<const CoverageMap> map;  // coverage map of its behavior
 };
 
 enum class Verdict : std::uint8_t {
@@ -38,20 +38,20 @@ enum class Verdict : std::uint8_t {
   failed,      // an expectation did not hold, or the robot fell
   crashed,     // died of a signal
   timed_out,   // killed after the time-out
-  bad_input,   // the scenario or what it names is wrong
-  bad_output,  // the run said nothing that can be understood
-  machine,     // the machine or the backend failed
-  stopped,     // by Ctrl-C, or not begun because of it
+  bad_input,   // error in the scenario or in a file that it names
+  bad_output,  // the run's output is malformed
+  machine,     // machine or backend failure
+  stopped,     // killed or not started because of Ctrl-C
 };
 const char* verdict_name(Verdict verdict);
 
-// What became of one expectation in one run.
+// Result of one expectation in one run.
 struct Observation {
   bool passed = false;
-  std::string value;         // as text, may be empty
-  std::optional<double> at;  // s, when it was decided
+  std::string value;         // formatted; may be empty
+  std::optional<double> at;  // s, time of the decision
   std::int64_t tick = -1;    // -1: unknown
-  std::string state;         // active then
+  std::string state;         // active state at that time
   std::string why;
 };
 
@@ -59,28 +59,28 @@ struct SuiteRun {
   std::size_t scenario = 0;  // into Suite::scenarios
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::stopped;
-  std::string end;                         // how the run ended, by its own words
-  std::string why;                         // of a failure that is not an expectation's
+  std::string end;                         // reason for the end of the run, as reported by it
+  std::string why;                         // reason for a failure other than an expectation's
   std::string error_tail;                  // the last lines of stderr
-  std::vector<Observation> observations;   // one for each expectation; none if it gave no result
+  std::vector<Observation> observations;   // one for each expectation; empty without a result
   double wall_time = 0.0, cpu_time = 0.0;  // s
-  std::string folder;                      // of its log
-  std::string report;                      // path of the page; empty: none
+  std::string folder;                      // folder of its log
+  std::string report;                      // path of its report; empty: none
 };
 
-// An expectation over the seeds.
+// Result of an expectation over all seeds.
 struct Judgement {
   bool passed = false;
-  std::size_t held = 0, of = 0;    // runs in which it held, of those that were judged
-  std::vector<std::size_t> broke;  // runs (into Suite::runs) in which it did not hold
+  std::size_t held = 0, of = 0;    // number of runs in which it held, and of runs judged
+  std::vector<std::size_t> broke;  // runs (indices into Suite::runs) in which it did not hold
 };
 
 struct ScenarioResult {
   bool passed = false;
-  bool complete = false;              // every seed was run
+  bool complete = false;              // all seeds were run
   std::vector<Judgement> judgements;  // one for each expectation
-  std::vector<std::size_t> broken;    // runs that crashed, hung, fell, ...: why says what
-  double wall_time = 0.0;             // s, of its runs together
+  std::vector<std::size_t> broken;    // runs that crashed, hung, fell, ...; see SuiteRun::why
+  double wall_time = 0.0;             // s, sum over its runs
 };
 
 struct Suite {
@@ -93,18 +93,18 @@ struct Suite {
   bool interrupted = false;
 };
 
-// What failed, was expected and happened; a few lines, each ended. Nothing for a scenario that
-// passed.
+// Failures with expected and actual values; a few lines, each with line end. Empty for a scenario
+// that passed.
 std::string failure_text(const Suite& suite, std::size_t scenario);
-// The text as UTF-8 without control characters but tabs and ends of lines; `?` for all else: what a
-// child says may be anything.
+// The text as UTF-8 without control characters except tab and line feed; others become `?`, because
+// a child's output may contain anything.
 std::string printable(const std::string& text);
-// The command that does one run again, for a shell.
+// The shell command that repeats one run.
 std::string rerun_command(const Suite& suite, const SuiteRun& run);
-// The time at which a run went wrong, if it is known, s.
+// The time at which a run failed, s; nullopt if unknown.
 std::optional<double> moment_of(const SuiteRun& run);
 
-// JUnit's XML: a test suite for each scenario, in it a test case for its runs as such, and one for
+// JUnit XML: a test suite for each scenario, with a test case for the runs themselves and one for
 // each expectation over all seeds.
 std::string junit_xml(const Suite& suite);
 nlohmann::ordered_json suite_json(const Suite& suite);

@@ -1,4 +1,4 @@
-// What people read of a suite's failures; see suite.h.
+// Textual description of a suite's failures; see suite.h.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::size_t kMostSeedsNamed = 20;
 
-// Length in bytes of the UTF-8 character that begins here, if a page or
-// XML 1.0 may hold it; else 0.
+// Length in bytes of the UTF-8 character that begins here, if HTML and XML 1.0 allow it; else 0.
 std::size_t character_length(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) -> unsigned {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -54,7 +53,7 @@ std::string seeds_text(const Suite& suite, const std::vector<std::size_t>& runs)
   return text;
 }
 
-// What was seen, when and in which state.
+// The observed value, its time and the active state.
 std::string observed(const Observation& seen) {
   std::string text = seen.why;
   if (!seen.value.empty()) {
@@ -68,7 +67,7 @@ std::string observed(const Observation& seen) {
   return text.empty() ? "it did not hold" : text;
 }
 
-// How to see one run again.
+// How to repeat one run.
 std::string again(const Suite& suite, const SuiteRun& run) {
   std::string text = fmt::format("    rerun     {}\n", rerun_command(suite, run));
   if (!run.report.empty()) text += fmt::format("    report    {}\n", run.report);
@@ -76,11 +75,12 @@ std::string again(const Suite& suite, const SuiteRun& run) {
 }
 
 std::string broken_text(const Suite& suite, const SuiteRun& run) {
-  std::string text = fmt::format("    expected  {} (seed {})\n",
-                                 run.verdict == Verdict::failed
-                                     ? "a good end, along the golden trace if there is one"
-                                     : "a run to its end",
-                                 run.seed);
+  std::string text =
+      fmt::format("    expected  {} (seed {})\n",
+                  run.verdict == Verdict::failed
+                      ? "a normal end, within the tolerances of the golden trace if there is one"
+                      : "a run to its end",
+                  run.seed);
   text += fmt::format("    happened  {}: {}\n", verdict_name(run.verdict), run.why);
   if (!run.error_tail.empty()) text += indented(run.error_tail);
   return text + again(suite, run);
@@ -138,7 +138,7 @@ std::string failure_text(const Suite& suite, std::size_t scenario) {
   std::string text;
   if (!what.errors.empty()) text += indented(what.errors);
   for (std::size_t e = 0; e < result.judgements.size(); ++e) {
-    // Where every run broke off, that is the failure, not what it therefore did not show.
+    // If no run completed, that is the failure; expectations not observed are only a consequence.
     const Judgement& judgement = result.judgements[e];
     const bool seen = std::ranges::any_of(
         judgement.broke, [&](std::size_t r) { return !suite.runs[r].observations.empty(); });

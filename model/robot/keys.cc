@@ -7,7 +7,7 @@ namespace {
 using namespace core;  // the words in which tables are written
 
 constexpr WordSpec kReactionRows[] = {
-    {"continue", "it is counted and logged"},
+    {"continue", "the fault is counted and logged"},
     {"safe_state", "the behavior's `safe` state is entered"},
     {"safe_stop", "the run ends at once"},
 };
@@ -15,15 +15,15 @@ constexpr WordSpec kReactionRows[] = {
 constexpr KeySpec kRobotRows[] = {
     key("robot", integer(1, 1), "the version of robot files; the first key").required(),
     key("base", text_of("the path of a robot file"),
-        "a file this one inherits, relative to this one: maps merge by key, all else is replaced, "
+        "a file this one inherits, relative to this one: maps merge by key, everything else is "
+        "replaced, "
         "`NAME: off` removes, `KEY+:` appends to a list"),
     key("name", name_of("a robot"), "its name in logs and reports").otherwise("the folder's name"),
-    key("doc", text_of("a text"), "what robot it is, in a line"),
+    key("doc", text_of("a text"), "the robot, in one line"),
     key("model", text_of("the path of an MJCF or URDF file"),
         "bodies, joints and sites, relative to this file")
         .required(),
-    key("floating_base", text_of("the name of a body"), "the body that is free in space")
-        .required(),
+    key("floating_base", text_of("the name of a body"), "the free-floating body").required(),
     key("rate", quantity(kRate, "a rate in Hz"), "of the control tick; whole millihertz")
         .otherwise("1000 Hz"),
     key("standing_height", quantity(kLength),
@@ -34,19 +34,19 @@ constexpr KeySpec kRobotRows[] = {
     key("joints", by_name(map_of(kJointKeys)), "actuated joints, in the order of commands and logs")
         .required(),
     key("groups", by_name(list(name_of("a joint"))), "lists of joints by name, with globs"),
-    key("contacts", by_name(map_of(kContactKeys)), "places that can touch the world"),
-    key("points", by_name(map_of(kPointKeys)), "places that tasks can move"),
-    key("sensors", map_of(kSensorsKeys), "what is measured"),
-    key("symmetry", map_of(kSymmetryKeys), "what changes places in a mirror image"),
-    key("limits", map_of(kLimitsKeys), "beyond which something is wrong"),
+    key("contacts", by_name(map_of(kContactKeys)), "points that can touch the world"),
+    key("points", by_name(map_of(kPointKeys)), "points that tasks can control"),
+    key("sensors", map_of(kSensorsKeys), "the sensors"),
+    key("symmetry", map_of(kSymmetryKeys), "items exchanged in a mirror image"),
+    key("limits", map_of(kLimitsKeys), "limits beyond which a fault is raised"),
     key("faults", by_name(choice(kReactionRows)),
         "reactions by fault. Without a word: `fall` and `simulator` safe_state, `non_finite` "
         "safe_stop, the others continue"),
 };
 
 constexpr KeySpec kJointRows[] = {
-    key("position", pair(quantity(kNone, "an angle")), "`[LEAST, GREATEST]`").required(),
-    key("torque", quantity(kTorque), "greatest, both ways").required(),
+    key("position", pair(quantity(kNone, "an angle")), "`[MINIMUM, MAXIMUM]`").required(),
+    key("torque", quantity(kTorque), "limit in both directions").required(),
     key("sea", map_of(kSeaKeys), "the series-elastic actuator"),
 };
 
@@ -58,23 +58,25 @@ constexpr KeySpec kSeaRows[] = {
 constexpr WordSpec kContactTypeRows[] = {
     {"point", "three forces"},
     {"surface", "three forces and three moments, in limits"},
-    {"fixed", "held on all sides"},
+    {"fixed", "three forces and three moments, in both directions"},
 };
 
 constexpr KeySpec kContactRows[] = {
-    key("site", text_of("a site's name"), "its place in the model").required(),
-    key("type", choice(kContactTypeRows), "what it can transmit").otherwise("point"),
+    key("site", text_of("a site's name"), "its position in the model").required(),
+    key("type", choice(kContactTypeRows), "forces and moments that it can transmit")
+        .otherwise("point"),
     key("group", name_of("a joint group"), "the joints of its leg"),
     key("radius", quantity(kLength),
-        "of a ball about the site: the contact point is that far along the ground's normal")
+        "of a ball about the site: distance of the contact point along the ground's normal")
         .otherwise("0 m"),
     key("friction", quantity(kNone),
-        "coefficient that `footfall check` counts on; the world in which it runs has its own")
+        "coefficient assumed by `footfall check`; the simulated world has its own")
         .otherwise("0.9"),
 };
 
 constexpr KeySpec kPointRows[] = {
-    key("site", text_of("a site's name"), "its place in the model, and its frame's orientation"),
+    key("site", text_of("a site's name"),
+        "its position in the model, and the orientation of its frame"),
     key("body", text_of("a body's name"), "instead of a site: the body's own frame"),
 };
 
@@ -85,7 +87,7 @@ constexpr KeySpec kSensorsRows[] = {
 };
 
 constexpr KeySpec kImuRows[] = {
-    key("site", text_of("a site's name"), "where it sits").required(),
+    key("site", text_of("a site's name"), "its position").required(),
 };
 
 constexpr KeySpec kMocapRows[] = {
@@ -94,22 +96,23 @@ constexpr KeySpec kMocapRows[] = {
 
 constexpr KeySpec kSymmetryRows[] = {
     key("swap", pairs(name_of("a contact, group, point or joint")),
-        "pairs that change places: `[[right_foot, left_foot], ...]`")
+        "pairs to be exchanged: `[[right_foot, left_foot], ...]`")
         .required(),
 };
 
 constexpr KeySpec kLimitsRows[] = {
-    key("tilt", quantity(kNone, "an angle"), "of the base, beyond which it has fallen")
+    key("tilt", quantity(kNone, "an angle"), "of the base, beyond which the robot has fallen")
         .otherwise("0.8 rad"),
-    key("height", quantity(kNone, "a part"), "of `standing_height`, below which it has fallen")
+    key("height", quantity(kNone, "a part"),
+        "fraction of `standing_height`, below which the robot has fallen")
         .otherwise("60 %"),
-    key("torque_step", quantity(kTorque), "of a joint's torque between neighbouring ticks")
+    key("torque_step", quantity(kTorque), "change of a joint's torque between two ticks")
         .otherwise("none"),
     key("edit_ramp", quantity(kTime),
-        "over which values move at least when a person changes them in a run")
+        "minimum ramp duration of values changed by a user during a run")
         .otherwise("100 ms"),
     key("reload_watch", quantity(kTime),
-        "how long after a reload a fault with a reaction brings the former behavior back")
+        "trial time after a reload, in which a fault with a reaction restores the former behavior")
         .otherwise("2 s"),
 };
 
@@ -122,22 +125,22 @@ constinit const core::KeyTable kJointKeys = {
 constinit const core::KeyTable kSeaKeys = {
     .id = "sea", .doc = "A series-elastic actuator.", .keys = kSeaRows};
 constinit const core::KeyTable kContactKeys = {
-    .id = "contact", .doc = "A place that can touch the world.", .keys = kContactRows};
+    .id = "contact", .doc = "A point that can touch the world.", .keys = kContactRows};
 constinit const core::KeyTable kPointKeys = {
     .id = "point",
-    .doc = "A place that tasks can move, with a frame. Contacts are points too.",
+    .doc = "A point that tasks can control, with a frame. Contacts are points, too.",
     .keys = kPointRows,
     .one_of = {"site body"}};
 constinit const core::KeyTable kSensorsKeys = {
-    .id = "sensors", .doc = "What is measured.", .keys = kSensorsRows};
+    .id = "sensors", .doc = "The sensors.", .keys = kSensorsRows};
 constinit const core::KeyTable kImuKeys = {
     .id = "imu", .doc = "Accelerometer and gyroscope.", .keys = kImuRows};
 constinit const core::KeyTable kMocapKeys = {
     .id = "mocap", .doc = "Motion capture.", .keys = kMocapRows};
 constinit const core::KeyTable kSymmetryKeys = {
-    .id = "symmetry", .doc = "What a mirror image exchanges.", .keys = kSymmetryRows};
+    .id = "symmetry", .doc = "Items exchanged in a mirror image.", .keys = kSymmetryRows};
 constinit const core::KeyTable kLimitsKeys = {
-    .id = "limits", .doc = "Beyond which something is wrong.", .keys = kLimitsRows};
+    .id = "limits", .doc = "Limits beyond which a fault is raised.", .keys = kLimitsRows};
 constinit const std::span<const core::WordSpec> kContactTypes = kContactTypeRows;
 constinit const std::span<const core::WordSpec> kReactions = kReactionRows;
 

@@ -19,7 +19,7 @@ namespace {
                            "; are libegl1 and libgl1-mesa-dri installed?)");
 }
 
-// The display of Mesa's surfaceless platform; a driver without it may have a default one.
+// The display of Mesa's surfaceless platform; for drivers without it, the default display.
 EGLDisplay open_display() {
   EGLDisplay display = EGL_NO_DISPLAY;
   const auto get_platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
@@ -57,7 +57,7 @@ FilmContext::FilmContext() : display_(open_display()) {
 }
 
 FilmContext::~FilmContext() {
-  // The display is the process's, shared by all contexts: it stays.
+  // The display belongs to the process and is shared by all contexts, so it is not terminated.
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
 }

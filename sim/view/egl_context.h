@@ -1,4 +1,4 @@
-// An OpenGL context without screen or window: EGL on no surface at all, drawn by the GPU or by
+// An OpenGL context without screen or window: EGL without a surface, rendered by the GPU or by
 // Mesa.
 #pragma once
 
@@ -6,12 +6,12 @@ namespace footfall::sim {
 
 class FilmContext {
  public:
-  // Throws std::runtime_error with one sentence if EGL, or OpenGL on it, is not to be had.
+  // Throws std::runtime_error with one sentence if EGL or OpenGL is not available.
   FilmContext();
   ~FilmContext();
   FilmContext(const FilmContext&) = delete;
   FilmContext& operator=(const FilmContext&) = delete;
-  // OpenGL calls of this thread go here.
+  // Makes this the current OpenGL context of the calling thread.
   void make_current();
 
  private:

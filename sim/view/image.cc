@@ -1,4 +1,4 @@
-// Pictures; see image.h. The one place with stb's implementation of PNG.
+// Pictures; see image.h. The only file that contains stb's PNG implementation.
 #include "sim/view/image.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A picture in memory and as PNG. After a run, for films and reports.
+// A picture in memory and its PNG encoding. After a run, for films and reports.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ struct Image {
       : width(columns),
         height(rows),
         rgb(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), gray) {}
-  // Copies `tile` so that its upper left corner comes to (left, top); what sticks out is cut off.
+  // Copies `tile` with its upper left corner at (left, top), clipped to this picture.
   void paste(const Image& tile, int left, int top);
 };
 
 // The picture as the bytes of a PNG file.
 std::vector<std::uint8_t> encode_png(const Image& image);
 
-// Throws std::runtime_error with one sentence that names the path if it cannot be written.
+// Throws std::runtime_error with one sentence that names the path on failure.
 void write_png(const Image& image, const std::string& path);
 
 }  // namespace footfall::sim

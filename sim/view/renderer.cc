@@ -17,10 +17,10 @@ namespace {
 
 constexpr int kMaxGeoms = 2000;
 constexpr double kArrowScale = 0.4 / 200.0;  // m/N
-constexpr double kArrowMinimum = 5.0;        // N; shorter arrows are only specks
-constexpr double kCameraAzimuth = 145.0;     // deg: from the front, a little from the right
+constexpr double kArrowMinimum = 5.0;        // N; shorter arrows would only be specks
+constexpr double kCameraAzimuth = 145.0;     // deg; from the front, slightly from the right
 constexpr double kCameraElevation = -10.0;   // deg
-constexpr double kViewHeight = 1.72;         // m that the picture shows at the robot
+constexpr double kViewHeight = 1.72;         // m, height of the visible area at the robot
 constexpr std::array<float, 3> kInk = {0.10F, 0.13F, 0.17F};
 
 struct DeleteModel {
@@ -40,7 +40,7 @@ void add_arrow(mjvScene& scene, const FilmArrow& arrow) {
   for (std::size_t i = 0; i < 3; ++i) to[i] = arrow.from[i] + kArrowScale * arrow.force[i];
   mjv_makeConnector(&geom, mjGEOM_ARROW, 0.014, arrow.from[0], arrow.from[1], arrow.from[2], to[0],
                     to[1], to[2]);
-  geom.size[2] *= 2.0F;  // an arrow is drawn half as long as its connector
+  geom.size[2] *= 2.0F;  // MuJoCo draws an arrow half as long as its connector
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ struct FilmRenderer::Impl {
     }
     mjv_defaultOption(&option);
     option.sitegroup[4] = 0;
-    option.geomgroup[3] = 0;  // shapes that only collide
+    option.geomgroup[3] = 0;  // hide collision-only shapes
     mjv_defaultCamera(&camera);
     mjv_defaultScene(&scene);
     mjv_makeScene(model.get(), &scene, kMaxGeoms);
@@ -111,7 +111,7 @@ struct FilmRenderer::Impl {
     mjr_makeContext(model.get(), &render, width > 500 ? mjFONTSCALE_150 : mjFONTSCALE_100);
     mjr_setBuffer(mjFB_OFFSCREEN, &render);
     bottom_up.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    // The first picture of a context differs from all later ones in a few shades: draw it unseen.
+    // The first picture of a context differs from all later ones in a few shades: discard it.
     draw({});
   }
   ~Impl() {
@@ -145,7 +145,7 @@ struct FilmRenderer::Impl {
     mjr_render(viewport, &scene, &render);
   }
 
-  // Dark letters on the sky; lines count from the top.
+  // Dark letters on the sky; lines are numbered from the top.
   void write(const std::string& text, int line) {
     const auto width = static_cast<float>(viewport.width);
     const auto height = static_cast<float>(viewport.height);

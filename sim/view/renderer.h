@@ -1,5 +1,5 @@
-// Pictures of a robot without a window: MuJoCo's renderer on EGL, given joint configurations. After
-// or beside a run; it has a model and data of its own and never steps.
+// Renders pictures of a robot without a window: MuJoCo's renderer on EGL, for given joint
+// configurations. After or beside a run; has its own model and data and never steps.
 #pragma once
 
 #include <array>
@@ -21,35 +21,35 @@ struct FilmArrow {
 
 // One picture.
 struct FilmFrame {
-  std::vector<double> qpos;  // as FilmRenderer::place fills it
+  std::vector<double> qpos;  // filled by FilmRenderer's place functions
   std::string title;         // upper left, e.g. the time
   std::string caption;       // below it, e.g. the state
   std::vector<FilmArrow> arrows;
 };
 
-// Fine has four samples a pixel and shadows; fast is several times as quick, for movies.
+// Fine has four samples a pixel and shadows; fast is several times as fast, for movies.
 enum class FilmQuality { fine, fast };
 
 class FilmRenderer {
  public:
-  // mjcf: path of a robot's model, which gets a floor, a sky and lights. Throws std::runtime_error
-  // with one sentence: no such model, or no EGL.
+  // mjcf: path of a robot's model; a floor, a sky and lights are added. Throws std::runtime_error
+  // with one sentence if the model or EGL is not available.
   FilmRenderer(const std::string& mjcf, int width, int height,
                FilmQuality quality = FilmQuality::fine);
   ~FilmRenderer();
   FilmRenderer(FilmRenderer&&) noexcept;
   FilmRenderer& operator=(FilmRenderer&&) noexcept;
 
-  // Configuration of the model as its file has it.
+  // The model's default configuration (qpos0).
   std::vector<double> neutral() const;
-  // Base position (m, world) and orientation (roll, pitch, yaw: R = Rz Ry Rx, rad) into `qpos`.
-  // Without a free joint in the model nothing happens.
+  // Writes base position (m, world) and orientation (roll, pitch, yaw: R = Rz Ry Rx, rad) into
+  // `qpos`. No effect for a model without free joint.
   void place_base(std::span<const double, 3> position, std::span<const double, 3> rpy,
                   std::vector<double>& qpos) const;
-  // Where a joint's position is in qpos, -1 if there is no such joint.
+  // Index of a joint's position in qpos, -1 if absent.
   int joint_address(std::string_view name) const;
 
-  // Draws one frame; the camera follows the base, three-quarter from the front.
+  // Renders one frame; the camera follows the base, three-quarter from the front.
   Image render(const FilmFrame& frame);
 
  private:
@@ -60,7 +60,7 @@ class FilmRenderer {
 // Pictures of equal size side by side, `columns` in a row.
 Image film_strip(std::span<const Image> pictures, int columns);
 
-// The MJCF of the robot in `mjcf` on a checkered floor under a light sky.
+// The robot of the file `mjcf` on a checkered floor under a light sky, as MJCF.
 std::string film_scene(const std::string& mjcf, FilmQuality quality);
 
 }  // namespace footfall::sim

@@ -9,14 +9,14 @@
 namespace footfall::sim {
 namespace {
 
-// One word for the shell, whatever is in it.
+// Quotes a text as one word for the shell.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
 }
 
-// A path that begins with `-` would be an option.
+// A path that begins with `-` would be read as an option.
 std::string as_path(const std::string& path) { return path.starts_with('-') ? "./" + path : path; }
 
 }  // namespace
@@ -36,7 +36,7 @@ MovieWriter::MovieWriter(const std::string& path, int width, int height, double 
       " -framerate " + std::to_string(frames_per_second) +
       " -i - -c:v libx264 -preset veryfast -crf 23 -pix_fmt yuv420p -movflags +faststart " +
       quoted(as_path(path));
-  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ends early is an error to tell, not our end
+  std::signal(SIGPIPE, SIG_IGN);  // if ffmpeg exits early, add() reports it
   pipe_ = ::popen(command.c_str(), "w");
   if (pipe_ == nullptr) throw std::runtime_error("cannot start ffmpeg for the film '" + path + "'");
 }

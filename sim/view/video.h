@@ -1,4 +1,4 @@
-// A video file, made by ffmpeg from frames that are piped to it. After or beside a run.
+// Writes a video file by piping frames to ffmpeg. After or beside a run.
 #pragma once
 
 #include <cstdio>
@@ -16,9 +16,9 @@ class MovieWriter {
   ~MovieWriter();
   MovieWriter(const MovieWriter&) = delete;
   MovieWriter& operator=(const MovieWriter&) = delete;
-  // Adds a frame of the size given above. Throws std::runtime_error if ffmpeg takes no more.
+  // Adds a frame of the size given above. Throws std::runtime_error if ffmpeg has exited.
   void add(const Image& frame);
-  // Ends the file. Throws std::runtime_error if ffmpeg reports an error.
+  // Completes the file. Throws std::runtime_error if ffmpeg reports an error.
   void finish();
 
  private:

@@ -22,7 +22,7 @@ using core::YamlNode;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// One section of the file a function; each reports what is wrong in it and the rest goes on.
+// One function a section of the file; each reports its own problems and the next one goes on.
 class WorldLoader {
  public:
   WorldLoader(const std::string& path, Diagnostics& diagnostics) : diagnostics_(diagnostics) {
@@ -212,7 +212,7 @@ class WorldLoader {
     const auto change = core::read_bounded(node, core::kNone, kMostLighter, kMostHeavier,
                                            diagnostics_, "a change such as \"+5 %\"");
     if (!change) return;
-    // "105 %" might mean either: a change has a sign.
+    // "105 %" is ambiguous (a factor or a change): a change needs a sign.
     const std::size_t first = node.scalar.find_first_not_of(" \t");
     const bool has_sign = node.scalar[first] == '+' || node.scalar[first] == '-';
     if (!has_sign && *change != 0.0) {
@@ -262,7 +262,7 @@ class WorldLoader {
     }
   }
 
-  // Its two values have different dimensions: a time constant and a ratio.
+  // The two values have different dimensions: a time constant and a ratio.
   void read_solref(const YamlNode& node) {
     if (!node.is_sequence() || node.items.size() != 2) {
       core::report_expected(node, "[TIME CONSTANT, DAMPING RATIO]", diagnostics_);

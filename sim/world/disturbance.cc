@@ -29,7 +29,7 @@ std::vector<std::string_view> split_at_commas(std::string_view text) {
   }
 }
 
-// Takes `word` and the blanks after it off the beginning of `text`.
+// Removes `word` and the blanks after it from the beginning of `text`.
 bool take_word(std::string_view& text, std::string_view word) {
   if (!text.starts_with(word) || text.size() == word.size() ||
       kBlanks.find(text[word.size()]) == std::string_view::npos) {
@@ -45,7 +45,7 @@ std::optional<double> quantity(std::string_view text, core::Dimension dimension)
   return parsed->value;
 }
 
-// `step N` or `step N phase P`, behind the word step.
+// `step N` or `step N phase P`, without the leading word `step`.
 std::optional<AtStep> parse_step(std::string_view text) {
   AtStep at;
   const char* const end = text.data() + text.size();

@@ -12,18 +12,18 @@
 
 namespace footfall::sim {
 
-// When the run's clock reaches `seconds`.
+// At `seconds` of the run's clock.
 struct AtTime {
   double seconds = 0.0;
 };
 
-// In the `step`-th step (from 1), at a part of its duration.
+// In the `step`-th step (from 1), at `phase` of its duration.
 struct AtStep {
   int step = 1;
-  double phase = 0.0;  // 0 up to below 1
+  double phase = 0.0;  // [0, 1)
 };
 
-// A constant horizontal force on a body for some time.
+// A constant horizontal force on a body for a limited time.
 struct PushSpec {
   double force = 0.0;      // N
   double duration = 0.0;   // s
@@ -32,9 +32,9 @@ struct PushSpec {
   std::string body = "torso";  // at its centre of mass
 };
 
-// Parses `FORCE_N,DURATION_S,DIRECTION_DEG,AT`; AT is a time in seconds, or `step N`, or
-// `step N phase P` with P from 0 to 1 or in %. Units may be written (`40 N,100 ms,90 deg,3 s`).
-// Empty with what was expected in `error` if the text is not that.
+// Parses `FORCE_N,DURATION_S,DIRECTION_DEG,AT`; AT is a time in seconds, or `step N`, or `step N
+// phase P` with P from 0 to 1 or in %. Units may be written (`40 N,100 ms,90 deg,3 s`). nullopt if
+// malformed, with the expected format in `error`.
 std::optional<PushSpec> parse_push(std::string_view text, std::string& error,
                                    std::string_view body = "torso");
 

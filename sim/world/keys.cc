@@ -4,31 +4,33 @@
 namespace footfall::sim {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
 constexpr KeySpec kWorldRows[] = {
     key("world", integer(1, 1), "the version of world files; the first key").required(),
     key("base", text_of("the path of a world file"),
-        "a file this one inherits, relative to this one: maps merge by key, all else is replaced, "
+        "a file this one inherits, relative to this one: maps merge by key, everything else is "
+        "replaced, "
         "`NAME: off` removes, `KEY+:` appends to a list"),
     key("name", name_of("a world"), "its name in logs and reports").otherwise("the file's name"),
-    key("doc", text_of("a text"), "what is special about it, in a line"),
-    key("ground", map_of(kGroundKeys), "what the robot walks on"),
-    key("surface", map_of(kSurfaceKeys), "the height of the ground that the CoM follows"),
-    key("actuators", map_of(kActuatorsKeys), "what comes between command and joint torque"),
-    key("sensors", map_of(kWorldSensorsKeys), "what sensors add to the truth"),
+    key("doc", text_of("a text"), "its purpose, in one line"),
+    key("ground", map_of(kGroundKeys), "the ground"),
+    key("surface", map_of(kSurfaceKeys), "the ground height that the CoM follows"),
+    key("actuators", map_of(kActuatorsKeys), "dynamics between command and joint torque"),
+    key("sensors", map_of(kWorldSensorsKeys), "sensor imperfections"),
     key("control_model", map_of(kControlModelKeys),
-        "what the controller believes, against the truth"),
-    key("constraints", list(name_of("an external aid")), "a boom, a planarizer: none by default"),
-    key("planner_latency", quantity(kTime), "between asking a planner and its answer")
+        "model errors of the controller, relative to the simulation"),
+    key("constraints", list(name_of("an external aid")),
+        "e.g. a boom or a planarizer; none by default"),
+    key("planner_latency", quantity(kTime), "time from a planner request to its answer")
         .otherwise("2 ms"),
-    key("start", map_of(kStartKeys), "how a run begins"),
+    key("start", map_of(kStartKeys), "initial condition of a run"),
     key("physics", map_of(kPhysicsKeys), "MuJoCo's settings"),
 };
 
 constexpr KeySpec kGroundRows[] = {
     key("friction", quantity(kNone), "coefficient of sliding friction").otherwise("0.9"),
-    key("terrain", list(map_of(kTerrainKeys)), "pieces that lie on the flat ground"),
+    key("terrain", list(map_of(kTerrainKeys)), "pieces on the flat ground"),
 };
 
 constexpr KeySpec kTerrainRows[] = {
@@ -41,30 +43,30 @@ constexpr KeySpec kBoxRows[] = {
 };
 
 constexpr KeySpec kSurfaceRows[] = {
-    key("ramps", list(map_of(kRampKeys)), "from which the surface is added up").required(),
+    key("ramps", list(map_of(kRampKeys)), "ramps whose sum is the surface").required(),
 };
 
 constexpr KeySpec kRampRows[] = {
     key("from", quantity(kLength), "x in the world where it begins").required(),
     key("to", quantity(kLength), "x in the world where it ends").required(),
-    key("rise", quantity(kLength), "by which it rises; negative falls").required(),
+    key("rise", quantity(kLength), "rise; negative: fall").required(),
 };
 
 constexpr KeySpec kStartRows[] = {
     key("velocity", quantity(kVelocity),
-        "standard deviation of the base's horizontal velocity at the start, by seed")
+        "standard deviation of the base's random initial horizontal velocity")
         .otherwise("0 m/s"),
 };
 
 constexpr WordSpec kActuatorModelRows[] = {
-    {"ideal", "the joint torque is the command"},
+    {"ideal", "the joint torque equals the command"},
     {"series_elastic", "motor, spring and torque loop"},
 };
 
 constexpr KeySpec kActuatorsRows[] = {
-    key("model", choice(kActuatorModelRows), "what the actuators are").otherwise("ideal"),
-    key("command_delay", quantity(kTime), "between command and motor").otherwise("0 s"),
-    key("coulomb", quantity(kTorque), "friction in the joint").otherwise("0 Nm"),
+    key("model", choice(kActuatorModelRows), "actuator model").otherwise("ideal"),
+    key("command_delay", quantity(kTime), "delay between command and motor").otherwise("0 s"),
+    key("coulomb", quantity(kTorque), "Coulomb friction in the joint").otherwise("0 Nm"),
 };
 
 constexpr KeySpec kWorldSensorsRows[] = {
@@ -75,7 +77,7 @@ constexpr KeySpec kWorldSensorsRows[] = {
 };
 
 constexpr KeySpec kJointSensorRows[] = {
-    key("resolution", quantity(kNone, "an angle"), "step of the encoder").otherwise("0 rad"),
+    key("resolution", quantity(kNone, "an angle"), "resolution of the encoder").otherwise("0 rad"),
 };
 
 constexpr KeySpec kGyroRows[] = {
@@ -84,20 +86,21 @@ constexpr KeySpec kGyroRows[] = {
 };
 
 constexpr KeySpec kMocapSensorRows[] = {
-    key("rate", quantity(kRate, "a rate in Hz"), "how often").otherwise("every tick"),
-    key("delay", quantity(kTime), "from exposure to arrival").otherwise("0 s"),
+    key("rate", quantity(kRate, "a rate in Hz"), "sample rate").otherwise("every tick"),
+    key("delay", quantity(kTime), "time from exposure to arrival").otherwise("0 s"),
     key("noise", quantity(kLength), "standard deviation").otherwise("0 m"),
-    key("occlusion", quantity(kNone, "a part"), "probability of a marker being hidden")
+    key("occlusion", quantity(kNone, "a part"), "probability that a marker is hidden")
         .otherwise("0 %"),
 };
 
 constexpr KeySpec kSwitchRows[] = {
-    key("delay", quantity(kTime), "from touch to report").otherwise("0 s"),
-    key("threshold", quantity(kForce), "force that closes it").otherwise("0 N"),
+    key("delay", quantity(kTime), "time from contact to report").otherwise("0 s"),
+    key("threshold", quantity(kForce), "force that closes the switch").otherwise("0 N"),
 };
 
 constexpr KeySpec kControlModelRows[] = {
-    key("mass", quantity(kNone, "a change such as \"+5 %\""), "of all bodies, with its sign")
+    key("mass", quantity(kNone, "a change such as \"+5 %\""),
+        "relative change of all masses, with sign")
         .otherwise("0 %"),
     key("com", by_name(by_axis(quantity(kLength))), "shift of the centre of mass, by body"),
 };
@@ -124,7 +127,7 @@ constexpr KeySpec kPhysicsRows[] = {
     key("cone", choice(kConeRows), "of friction").otherwise("elliptic"),
     key("impratio", quantity(kNone), "stiffness of friction against that of the normal")
         .otherwise("10"),
-    key("iterations", integer(1, 100'000), "of the solver, at most").otherwise("100"),
+    key("iterations", integer(1, 100'000), "maximum number of solver iterations").otherwise("100"),
     key("tolerance", quantity(kNone), "of the solver").otherwise("1e-8"),
     key("solref", list(any_quantity()), "`[TIME CONSTANT, DAMPING RATIO]` of contacts")
         .otherwise("[1 ms, 1]"),
@@ -141,23 +144,21 @@ constexpr KeySpec kPhysicsRows[] = {
 constinit const core::KeyTable kWorldKeys = {
     .id = "world", .doc = "The root of a world file.", .keys = kWorldRows};
 constinit const core::KeyTable kGroundKeys = {
-    .id = "ground", .doc = "What the robot walks on.", .keys = kGroundRows};
+    .id = "ground", .doc = "The ground.", .keys = kGroundRows};
 constinit const core::KeyTable kTerrainKeys = {
     .id = "terrain", .doc = "A piece of terrain.", .keys = kTerrainRows};
 constinit const core::KeyTable kBoxKeys = {
-    .id = "box", .doc = "A box that lies on the ground.", .keys = kBoxRows};
+    .id = "box", .doc = "A box on the ground.", .keys = kBoxRows};
 constinit const core::KeyTable kSurfaceKeys = {
-    .id = "surface", .doc = "The height of the ground that the CoM follows.", .keys = kSurfaceRows};
+    .id = "surface", .doc = "The ground height that the CoM follows.", .keys = kSurfaceRows};
 constinit const core::KeyTable kRampKeys = {
-    .id = "ramp", .doc = "A stretch along x over which the surface rises.", .keys = kRampRows};
+    .id = "ramp", .doc = "A range of x in which the surface rises.", .keys = kRampRows};
 constinit const core::KeyTable kStartKeys = {
-    .id = "start", .doc = "How a run begins.", .keys = kStartRows};
+    .id = "start", .doc = "Initial condition of a run.", .keys = kStartRows};
 constinit const core::KeyTable kActuatorsKeys = {
-    .id = "actuators",
-    .doc = "What comes between command and joint torque.",
-    .keys = kActuatorsRows};
+    .id = "actuators", .doc = "Dynamics between command and joint torque.", .keys = kActuatorsRows};
 constinit const core::KeyTable kWorldSensorsKeys = {
-    .id = "world_sensors", .doc = "What sensors add to the truth.", .keys = kWorldSensorsRows};
+    .id = "world_sensors", .doc = "Sensor imperfections.", .keys = kWorldSensorsRows};
 constinit const core::KeyTable kJointSensorKeys = {
     .id = "joint_sensor", .doc = "Joint encoders.", .keys = kJointSensorRows};
 constinit const core::KeyTable kGyroKeys = {
@@ -168,7 +169,7 @@ constinit const core::KeyTable kSwitchKeys = {
     .id = "switch", .doc = "Foot switches.", .keys = kSwitchRows};
 constinit const core::KeyTable kControlModelKeys = {
     .id = "control_model",
-    .doc = "What the controller believes, against the truth.",
+    .doc = "Model errors of the controller, relative to the simulation.",
     .keys = kControlModelRows};
 constinit const core::KeyTable kPhysicsKeys = {
     .id = "physics", .doc = "MuJoCo's settings.", .keys = kPhysicsRows};

@@ -1,5 +1,5 @@
-// A `world: 1` file as data: every map with its keys, every list of words. The loader reads its
-// names from here, the JSON Schema and docs/reference.md are printed from here.
+// The format of a `world: 1` file as data: every map with its keys, every list of words. Used by
+// the loader, the JSON Schema and docs/reference.md.
 #pragma once
 
 #include "core/yaml/key_table.h"

@@ -1,4 +1,4 @@
-"""What the rows of live tuning share: an engine that runs and can be tuned, and programs that work on it."""
+"""Shared by the rows of live tuning: a running engine, and client programs."""
 import json
 import os
 import random
@@ -15,7 +15,7 @@ GROUP = "239.255.76.67"
 
 
 def some_url(group=GROUP, ttl=0):
-    """A port of its own, so that nothing else on the machine is heard."""
+    """A URL with a separate port, to receive no other programs' packets."""
     return f"udpm://{group}:{random.SystemRandom().randint(20000, 60000)}?ttl={ttl}"
 
 

@@ -1,7 +1,7 @@
-"""What the acceptance rows share: runs of `footfall` two at a time, runs of the benchmarks, and the closing line.
+"""Shared by the acceptance rows: runs of `footfall` two at a time, runs of the benchmarks, and the final line.
 
 A row is a small program: it measures, prints progress to stderr, then calls finish(), which prints `figure: ...` and
-exits 0 or 1. Anything that keeps it from measuring ends with an exception or with exit code 4.
+exits 0 or 1. If it cannot measure, it ends with an exception or with exit code 4.
 """
 import json
 import os
@@ -16,11 +16,11 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 BUILD = ROOT / "build" / "release"
 FOOTFALL = os.environ.get("FOOTFALL", str(BUILD / "apps" / "footfall"))
 BENCHES = Path(os.environ.get("FOOTFALL_BENCHES", BUILD / "tests" / "bench"))
-WANT = bool(os.environ.get("ACCEPTANCE_WANT"))  # also what only the wants need
+WANT = bool(os.environ.get("ACCEPTANCE_WANT"))  # also measure what only the want bars need
 BALANCE = "behaviors/library/balance.yaml"  # Tables I and II
 BEST = "behaviors/library/balance_best.yaml"  # the tuned parameter set
 PROCESSES = 2
-SEED = 100  # the first of the seeds that figures are reported with; smaller ones are for tuning
+SEED = 100  # first of the seeds for reported figures; smaller ones are for tuning
 
 
 def finish(figure, passed, want=None):
@@ -47,7 +47,7 @@ def progress_done():
 
 
 def last_json(text):
-    """The object that ends `text`; everything before it is for people."""
+    """The JSON object at the end of `text`."""
     lines = text.splitlines()
     for i in range(len(lines) - 1, -1, -1):
         if lines[i].startswith("{"):
@@ -70,7 +70,7 @@ def run(behavior, *arguments, log=False, timeout=7200 if WANT else 900):
 
 
 def run_all(cases):
-    """Runs the cases, each (name, [behavior, arguments...]), two at a time; returns {name: object} in their order."""
+    """Runs the cases, each (name, [behavior, arguments...]), two at a time; returns {name: object} in order."""
     results = {}
     with ThreadPoolExecutor(PROCESSES) as pool:
         futures = {pool.submit(run, *arguments): name for name, arguments in cases}
@@ -105,7 +105,7 @@ def bench(name, *arguments, timeout=600):
 
 
 def pick(figures, *path):
-    """figures[path[0]][path[1]]..., or a clear end."""
+    """figures[path[0]][path[1]]..., or exits with a clear message."""
     for key in path:
         if not isinstance(figures, dict) or figures.get(key) is None:
             give_up(f"no '{'.'.join(path)}' in the figures")
@@ -119,5 +119,5 @@ def spread(values):
 
 
 def scratch():
-    """A directory that is gone when the row ends."""
+    """A temporary directory, removed at the end."""
     return tempfile.TemporaryDirectory(prefix="footfall-acceptance-")

@@ -2,8 +2,8 @@
 #   source tools/completion/footfall.bash
 # or copy it to ~/.local/share/bash-completion/completions/footfall.
 #
-# Sub-commands and options are those that the program's own --help names; parameters and gains come from the
-# engine that runs (`footfall tune list --names`, half a second at most), else nothing is offered.
+# Sub-commands and options are taken from the program's --help; parameters and gains from the running engine
+# (`footfall tune list --names`, half a second at most), none without an engine.
 
 # Words of `footfall [SUB-COMMANDS] --help` that begin with the pattern: "options" or "subcommands".
 _footfall_help_words() {
@@ -23,7 +23,7 @@ _footfall_help_words() {
     }'
 }
 
-# Options before the word that is typed which say where the engine is.
+# Options before the current word that select the engine.
 _footfall_engine_options() {
   local i
   for ((i = 1; i < COMP_CWORD; ++i)); do
@@ -51,7 +51,7 @@ _footfall_behaviors() {
   done
 }
 
-# Names that begin with the word; `=` follows those that `set` takes.
+# Completes names that begin with the word; those for `set` are followed by `=`.
 _footfall_reply() {
   mapfile -t COMPREPLY < <(compgen -W "$1" -- "$2")
 }
@@ -74,7 +74,7 @@ _footfall() {
   local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   local commands=() i candidate
   COMPREPLY=()
-  # `NAME=` is three words to bash: a value is nobody's to guess.
+  # `NAME=` is three words to bash: values are not completed.
   [[ $word == = || $previous == = ]] && return
   # The sub-commands so far: `tune`, `tune set`.
   for ((i = 1; i < COMP_CWORD && ${#commands[@]} < 2; ++i)); do

@@ -1,4 +1,4 @@
-// What a person who tunes sees and asks for; see model.h.
+// Model of `footfall tune`; see model.h.
 #include "apps/tune/model/model.h"
 
 #include <fmt/format.h>
@@ -55,7 +55,7 @@ TuneParameter parameter_of(const footfall_lcm::parameter_t& told,
   return parameter;
 }
 
-// Plain parameters have axes, gains those of their task: not always x, y, z.
+// Parameters have their own axes, gains those of their task: not always x, y, z.
 std::string component_name(const TuneParameter& parameter, int component) {
   constexpr int kAxes = 3;
   if (parameter.size == 1) return parameter.name;
@@ -66,7 +66,7 @@ std::string component_name(const TuneParameter& parameter, int component) {
 }
 
 double step_of(const TuneParameter& parameter, double of_file) {
-  constexpr double kFirstGain = 1.0, kFirstOther = 0.1;  // SI: of what is 0 in the file
+  constexpr double kFirstGain = 1.0, kFirstOther = 0.1;  // SI, for values that are 0 in the file
   return default_step(of_file, parameter.min, parameter.max,
                       parameter.gain ? kFirstGain : kFirstOther, parameter.unit);
 }
@@ -83,7 +83,7 @@ void list_entries(TuneModel& model) {
   }
 }
 
-// The component that follows a name, `.x` or `[1]`, cut off; -1: none.
+// Removes a component suffix, `.x` or `[1]`, from a name; returns its index, -1 if none.
 int cut_component(std::string_view& name) {
   if (name.ends_with(']')) {
     const std::size_t open = name.rfind('[');
@@ -123,7 +123,7 @@ footfall_lcm::change_t change(std::string name, int component, std::vector<doubl
   return change;
 }
 
-// One text; its problem, if there is one, as a line for people.
+// Parses one text; reports a problem as one line of text.
 footfall_lcm::change_t read_change(const TuneModel& model, std::string_view text,
                                    std::string& problem) {
   const std::size_t equals = text.find('=');
@@ -167,7 +167,7 @@ void take_catalogue(TuneModel& model, const footfall_lcm::catalogue_t& catalogue
   model.catalogue = catalogue;
   model.parameters.clear();
   for (const footfall_lcm::parameter_t& told : catalogue.parameters) {
-    // What came over a network may say anything.
+    // Data from the network may be inconsistent.
     const bool whole = told.first >= 0 && told.size > 0 &&
                        std::int64_t{told.first} + told.size <= std::ssize(catalogue.values);
     if (whole) model.parameters.push_back(parameter_of(told, catalogue.values));
@@ -336,7 +336,7 @@ double signal_value(const TuneModel& model, std::string_view name) {
   const int index = find_signal(model, name);
   const auto& row = model.telemetry.signals;
   if (index < 0 || at(index) >= row.size() || !std::isfinite(row[at(index)])) return kNoValue;
-  // The number that the float's shortest text says: 0.9, not 0.89999998.
+  // The number in the float's shortest decimal text: 0.9, not 0.89999998.
   const auto quantity = core::parse_quantity(fmt::format("{}", row[at(index)]));
   return quantity ? quantity->value : kNoValue;
 }

@@ -1,4 +1,4 @@
-// What `footfall tune` was asked to do.
+// Command-line options of `footfall tune`.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@ namespace footfall::apps {
 struct TuneOptions {
   std::string url;
   std::string prefix = "FOOTFALL";
-  std::string key;  // file; empty: the user's own
+  std::string key;  // path of the key file; empty: the user's default key
   bool open = false;
   std::string who;
   double timeout = 3.0;  // s
   bool json = false;
-  // Of the sub-commands:
+  // For sub-commands:
   std::vector<std::string> names;  // NAME, GLOB, NAME=VALUE, EVENT
   std::vector<std::string> events;
   double over = 0.0;           // s
-  std::int64_t revision = -1;  // -1: whatever is in force
-  int count = 1;               // undo, redo
+  std::int64_t revision = -1;  // -1: the current revision
+  int count = 1;               // number of undo or redo steps
   bool only_names = false;
   std::string file;  // key FILE, save --to FILE
   bool yes = false, dry_run = false;

@@ -1,4 +1,4 @@
-// Requests of one person, one after the other; see outbox.h.
+// Queue of one user's requests; see outbox.h.
 #include "apps/tune/model/outbox.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ void TuneOutbox::ask(footfall_lcm::request_t request) {
   queue_.push_back({std::move(request), {}, 0.0});
 }
 
-// Fills in the request; false: nothing of it is left.
+// Completes the request; false if nothing is left to send.
 bool TuneOutbox::prepare(const TuneModel& model, Ask& ask) {
   if (!ask.wanted.empty()) {
     std::vector<footfall_lcm::change_t> changes;
@@ -92,7 +92,7 @@ void TuneOutbox::answered(const footfall_lcm::answer_t& answer) {
     queue_.push_front(std::move(ask));
     return;
   }
-  // What builds on a refused value goes with it.
+  // Later requests may depend on the refused value, so they are dropped.
   queue_.clear();
   for (const std::string& reason : answer.reasons) problems_.push_back(reason);
 }

@@ -1,5 +1,6 @@
-// What one person asks of an engine, one request after the other: keys pressed meanwhile gather in
-// the next, and nothing that somebody else changed in between is overwritten unseen.
+// Queue of one user's requests to an engine, sent one after the other: keys pressed while a request
+// is pending are combined in the next one, and changes by other users are never overwritten
+// unnoticed.
 #pragma once
 
 #include <deque>
@@ -11,7 +12,7 @@
 
 namespace footfall::apps {
 
-// A new value of a slot, and the target that the person saw when they asked for it.
+// A new value of a slot, and the target value displayed when it was requested.
 struct WantedValue {
   int entry = 0;  // into TuneModel::entries
   double seen = 0.0, value = 0.0;
@@ -19,31 +20,31 @@ struct WantedValue {
 
 class TuneOutbox {
  public:
-  // Where the entry goes as far as this person knows: asked for, else the target in force.
+  // Target value of an entry after all requests of this user, else the current target.
   double expected(const TuneModel& model, int entry) const;
   bool is_waiting(int entry) const;
 
-  // A new value; further ones of the same `over` wait in one request.
+  // Requests a new value; values with the same `over` are combined in one request.
   void want(const TuneModel& model, int entry, double value, double over);
-  // A whole request (undo, several values): refused if something changed since.
+  // Queues a complete request (undo, several values): refused if something has changed since.
   void ask(footfall_lcm::request_t request);
-  // The next request to send, if none is under way and the values are as new as the last answer;
-  // entries that somebody else changed meanwhile are left out and said in problems().
+  // The next request to send, if none is pending and the values are as new as the last answer.
+  // Entries changed by another user in the meantime are left out and reported in problems().
   std::optional<footfall_lcm::request_t> next(const TuneModel& model);
-  // The answer to the request under way. A conflict with somebody else's edit of other values is
-  // tried again by next().
+  // Handles the answer to the pending request. After a conflict with another user's edit of other
+  // values, next() retries.
   void answered(const footfall_lcm::answer_t& answer);
-  // The engine is another one: nothing is under way.
+  // Resets the queue for a new engine.
   void clear();
 
-  // What went wrong since the last call, for people.
+  // Problems since the last call, as text.
   std::vector<std::string> take_problems();
   bool empty() const { return queue_.empty() && !sent_; }
 
  private:
   struct Ask {
     footfall_lcm::request_t request;
-    std::vector<WantedValue> wanted;  // empty: the request is whole
+    std::vector<WantedValue> wanted;  // empty if the request was given as a whole
     double over = 0.0;
   };
   const WantedValue* find_wanted(int entry) const;
@@ -51,7 +52,7 @@ class TuneOutbox {
 
   std::deque<Ask> queue_;
   std::optional<Ask> sent_;
-  std::int64_t needed_revision_ = 0;  // values older than that are not what is in force
+  std::int64_t needed_revision_ = 0;  // revision of the last answer; older values are outdated
   std::vector<std::string> problems_;
 };
 

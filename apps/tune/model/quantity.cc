@@ -1,4 +1,4 @@
-// Numbers with units as people read, type and step them; see quantity.h.
+// Formats, parses and steps numbers with units; see quantity.h.
 #include "apps/tune/model/quantity.h"
 
 #include <fmt/format.h>
@@ -20,13 +20,13 @@ std::string with_unit(std::string number, const DisplayUnit& unit) {
   return unit.name.empty() ? number : std::move(number) + " " + unit.name;
 }
 
-// A negative zero, and what only rounding left of nothing, reads as 0.
+// Negative zero and rounding residues are printed as 0.
 std::string number_text(double number, int digits) {
   std::string text = fmt::format("{:.{}g}", number, digits);
   return text == "-0" ? "0" : text;
 }
 
-// The number in the unit that reads back to `value`; empty: no number does.
+// The number in the unit that reads back to `value`; empty if no number does.
 std::string exact_number(double value, const DisplayUnit& unit) {
   std::string text = core::quantity_text(value, with_unit("1", unit));
   const std::string tail = with_unit("", unit);
@@ -56,7 +56,7 @@ std::vector<std::string> split_at_commas(std::string_view text) {
   }
 }
 
-// The numbers between the brackets, each with the unit that stands behind them.
+// The numbers between brackets, each followed by the common unit.
 std::vector<std::string> items_of(std::string_view text, std::string& problem) {
   if (text.empty() || text.front() != '[') return split_at_commas(text);
   const std::size_t end = text.find(']');
@@ -131,7 +131,7 @@ std::optional<double> read_duration(std::string_view text) {
 }
 
 double round_step(double size) {
-  // One part in 10^9: log10 of a power of ten may fall short of the whole number.
+  // Tolerance 1e-9, because log10 of a power of ten may be slightly below the integer.
   const double power = std::floor(std::log10(size) + 1e-9);
   const double part = size / std::pow(10.0, power) * (1.0 + 1e-9);
   return (part >= 5.0 ? 5.0 : part >= 2.0 ? 2.0 : 1.0) * std::pow(10.0, power);
@@ -147,7 +147,7 @@ double default_step(double nominal, double min, double max, double first, const 
 }
 
 double stepped(double value, double step, double steps, const DisplayUnit& unit) {
-  constexpr int kDigits = 12;  // more than anybody types, less than rounding leaves
+  constexpr int kDigits = 12;  // more than users type, fewer than rounding errors
   const std::string number = fmt::format("{:.{}g}", value / unit.factor + steps * step, kDigits);
   const auto quantity = core::parse_quantity(with_unit(number, unit));
   return quantity ? quantity->value : value;

@@ -1,4 +1,4 @@
-// Numbers with units as people read, type and step them: `150 ms`, `[220, 237, 400] 1/s^2`.
+// Formats, parses and steps numbers with units: `150 ms`, `[220, 237, 400] 1/s^2`.
 #pragma once
 
 #include <optional>
@@ -11,42 +11,40 @@
 
 namespace footfall::apps {
 
-// The unit in which values of one parameter are shown.
+// Display unit of one parameter.
 struct DisplayUnit {
   std::string name;     // `ms`; empty: none
-  double factor = 1.0;  // SI value of 1 of it
+  double factor = 1.0;  // SI value of one unit
 };
 
-// The unit of that dimension that suits a number of this size (SI): `ms` for 0.15 s, `cm` for 0.3
-// m.
+// A suitable unit for a number of this size (SI): `ms` for 0.15 s, `cm` for 0.3 m.
 DisplayUnit display_unit(core::Dimension dimension, double size);
 // `150 ms`, with at most this many significant digits.
 std::string shown_value(double value, const DisplayUnit& unit, int digits = 6);
 // `150 ms`, `[220, 237, 400] 1/s^2`.
 std::string shown_values(std::span<const double> values, const DisplayUnit& unit, int digits = 6);
-// The shortest such text that reads back to the same numbers, bit for bit; SI where the unit cannot
-// do that.
+// The shortest such text that reads back to the same bits; in SI if the display unit cannot do
+// that.
 std::string exact_values(std::span<const double> values, const DisplayUnit& unit);
 
-// Numbers read, or what is wrong with the text.
+// Parsed numbers, or the problem of the text.
 struct ReadValues {
   std::vector<double> values;  // SI
-  std::string problem;         // empty: none
+  std::string problem;         // empty if valid
 };
-// `150 ms`, `0.15`, `[1 m, 0.5 m]`, `220, 237, 400`, `[1, 2] cm`: bare numbers are SI; one number
-// serves all of `count`.
+// `150 ms`, `0.15`, `[1 m, 0.5 m]`, `220, 237, 400`, `[1, 2] cm`: bare numbers are SI; a single
+// number is used for all of `count`.
 ReadValues read_values(std::string_view text, core::Dimension dimension, int count);
-// A duration such as `500ms`, 0 or more; empty: it is none.
+// A duration such as `500ms`, 0 or more; nullopt if malformed.
 std::optional<double> read_duration(std::string_view text);
 
 // The largest of 1, 2, 5 times a power of ten that is at most `size` (> 0).
 double round_step(double size);
-// A step, in the display unit, for a value that is `nominal` in its file and may be min to max (SI;
-// equal: no range): about a twentieth of the value, at most a fiftieth of the range. From 0 on: at
-// most `first` (SI), whatever the range.
+// The step, in the display unit, for a value that is `nominal` in its file with limits min to max
+// (SI; equal: unlimited): about a twentieth of the value, at most a fiftieth of the range. For zero
+// values at most `first` (SI).
 double default_step(double nominal, double min, double max, double first, const DisplayUnit& unit);
-// The value (SI) `steps` steps of that size further, on the decimal number that a person would
-// write.
+// The value (SI) after `steps` steps, rounded to a decimal number in the display unit.
 double stepped(double value, double step, double steps, const DisplayUnit& unit);
 
 }  // namespace footfall::apps

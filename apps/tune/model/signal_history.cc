@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The values that fall into one column.
+// The values that belong to one column.
 struct Column {
   double low = kInfinity, high = -kInfinity, first = 0.0, last = 0.0;
   bool empty() const { return low > high; }
@@ -38,9 +38,9 @@ std::vector<Column> columns_of(const SignalHistory& history, std::size_t signal,
   return columns;
 }
 
-// From the end of one filled column to the beginning of the next.
+// Connects the end of each filled column to the beginning of the next one.
 void join_columns(std::vector<Column>& columns) {
-  constexpr std::ptrdiff_t kLongestGap = 8;  // columns: telemetry slower than the dots
+  constexpr std::ptrdiff_t kLongestGap = 8;  // columns: bridges slow telemetry
   std::ptrdiff_t before = -1;
   for (std::ptrdiff_t k = 0; k < std::ssize(columns); ++k) {
     Column& column = columns[at(k)];
@@ -64,14 +64,14 @@ void join_columns(std::vector<Column>& columns) {
   }
 }
 
-// A code point of the Braille block, in UTF-8.
+// The UTF-8 code of a character in the Braille block.
 std::string braille_character(unsigned dots) {
   const unsigned code = 0x2800 + dots;
   return {static_cast<char>(0xE0 | (code >> 12)), static_cast<char>(0x80 | ((code >> 6) & 0x3F)),
           static_cast<char>(0x80 | (code & 0x3F))};
 }
 
-// The dots of a character are numbered down the left, down the right, then the lowest two.
+// Braille dots are numbered down the left column, down the right one, then the lowest two.
 constexpr std::array<std::array<unsigned, 4>, 2> kBrailleDots = {
     {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
 
@@ -110,7 +110,7 @@ TextPlot plot_signal(const SignalHistory& history, std::size_t signal, double wi
 
   const int dots_down = height * down;
   std::vector<unsigned> cells(extent(width * height), 0U);
-  // A constant lies in the middle.
+  // A constant is drawn in the middle.
   const double span = plot.high - plot.low;
   const auto row_of = [&](double value) {
     const double part = span > 0.0 ? (plot.high - value) / span : 0.5;

@@ -1,4 +1,4 @@
-// The past of all signals, and a plot of one as text.
+// History of all signals, and a plot of one as text.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace footfall::apps {
 
-// A ring of rows: a time and one number a signal.
+// A ring buffer of rows: a time and one number a signal.
 class SignalHistory {
  public:
-  // Forgets all; room for `capacity` rows of `signals` numbers.
+  // Clears all rows; capacity for `capacity` rows of `signals` numbers.
   void reset(std::size_t signals, std::size_t capacity);
-  // A row of another length is left out. Time that runs backwards begins anew.
+  // Ignores a row of another length. Clears the history if time runs backwards.
   void add(double time, std::span<const float> row);
 
   std::size_t size() const { return size_; }
@@ -33,15 +33,15 @@ class SignalHistory {
   std::size_t signals_ = 0, next_ = 0, size_ = 0;
 };
 
-// A curve in characters.
+// A curve drawn with characters.
 struct TextPlot {
-  std::vector<std::string> rows;  // from above, each of the width asked for
-  double low = 0.0, high = 0.0;   // the edges of what is drawn
-  bool empty = true;              // no value in the window
+  std::vector<std::string> rows;  // top to bottom, each of the requested width
+  double low = 0.0, high = 0.0;   // limits of the vertical axis
+  bool empty = true;              // no value in the time window
 };
 
-// The last `window` seconds of a signal in width x height characters: dots of Braille, two across
-// and four down in a character, else `*`. Between values of neighbouring columns the line goes on.
+// The last `window` seconds of a signal in width x height characters: Braille dots, two across and
+// four down in a character, else `*`. Values of neighbouring columns are connected.
 TextPlot plot_signal(const SignalHistory& history, std::size_t signal, double window, int width,
                      int height, bool braille);
 

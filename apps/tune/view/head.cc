@@ -1,4 +1,4 @@
-// How the robot does, in a few lines; see head.h.
+// Status of the robot in a few lines; see head.h.
 #include "apps/tune/view/head.h"
 
 #include <fmt/format.h>
@@ -14,16 +14,16 @@ namespace {
 
 using footfall_lcm::telemetry_t;
 
-constexpr double kFullAuthority = 0.995;  // shown as 100 %
+constexpr double kFullAuthority = 0.995;  // from here on displayed as 100 %
 
-// What has no such name is shown by its number.
+// Falls back to the number if there is no name.
 std::string name_of(const std::vector<std::string>& names, std::int32_t index) {
   return index >= 0 && at(index) < names.size() ? names[at(index)] : fmt::format("#{}", index);
 }
 
 StyledLine labelled(const char* label) { return {{fitted(label, 8), Style::dim}}; }
 
-// `text` at the right edge, if there is room behind the line.
+// Adds `text` at the right edge if there is room.
 void put_right(StyledLine& line, Span span, int width) {
   int used = 0;
   for (const Span& each : line) used += text_columns(each.text);

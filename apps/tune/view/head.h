@@ -1,4 +1,4 @@
-// How the robot does, in a few lines: for the head of the full screen and for `watch`.
+// Status of the robot in a few lines: for the head of the full screen and for `watch`.
 #pragma once
 
 #include "apps/tune/model/model.h"
@@ -6,11 +6,11 @@
 
 namespace footfall::apps {
 
-inline constexpr double kLongSilence = 1.5;  // s: the engine tells its values twice a second
+inline constexpr double kLongSilence = 1.5;  // s: the engine sends its values twice a second
 
-// `running`, `fallen`, ...; empty: nothing was heard yet.
+// `running`, `fallen`, ...; empty before the first message.
 std::string condition_text(const TuneModel& model);
-// The active atomic states, blanks between.
+// The active atomic states, separated by blanks.
 std::string states_text(const TuneModel& model);
 // Behavior, robot, time, condition; state; feet and tick; tasks; faults.
 std::vector<StyledLine> head_lines(const TuneModel& model, double silence, int width);

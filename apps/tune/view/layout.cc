@@ -1,4 +1,4 @@
-// The full screen as a picture; see layout.h.
+// Layout of the full screen; see layout.h.
 #include "apps/tune/view/layout.h"
 
 #include <fmt/format.h>
@@ -16,8 +16,8 @@ namespace {
 
 using Lines = std::vector<StyledLine>;
 
-constexpr int kTwoColumns = 118;  // from this width on plot and edits stand beside the list
-constexpr int kEdgeLabel = 10;    // columns of the numbers beside a plot
+constexpr int kTwoColumns = 118;  // from this width on, plot and edits are beside the list
+constexpr int kEdgeLabel = 10;    // columns for numbers beside a plot
 
 // `-- title ----- right --`
 StyledLine rule(const std::string& title, const std::string& right, int width, bool unicode) {
@@ -37,7 +37,7 @@ StyledLine rule(const std::string& title, const std::string& right, int width, b
   return line;
 }
 
-// Keeps the selected row among `rows` that begin with `top`.
+// Scrolls so that the selected row is among the `rows` rows from `top` on.
 void scroll_to(int selected, int count, int rows, int& top) {
   top = std::clamp(top, std::max(0, selected - rows + 1), std::max(0, selected));
   top = std::max(0, std::min(top, count - rows));
@@ -83,7 +83,7 @@ StyledLine entry_line(const TuneModel& model, const TuneOutbox& outbox, int inde
   return line;
 }
 
-// Range, step and meaning of the selected one.
+// Range, step and doc of the selected entry.
 StyledLine detail_line(const TuneModel& model, const TuneView& view,
                        const std::vector<int>& shown) {
   if (shown.empty()) return {{" no name matches the filter (escape shows all)", Style::warning}};
@@ -170,7 +170,7 @@ void add_plot(Lines& lines, const TuneModel& model, const TuneView& view, int wi
   }
   const double size = std::max(std::abs(plot.low), std::abs(plot.high));
   const DisplayUnit shown = display_unit(dimension, size);
-  const DisplayUnit edge_unit{{}, shown.factor};  // the title has its name
+  const DisplayUnit edge_unit{{}, shown.factor};  // the title already has the unit
   const double value = signal_value(model, view.signal);
   std::string title = signal < 0 ? "plot" : view.signal;
   if (std::isfinite(value)) title += "  " + shown_value(value, shown, 4);
@@ -208,7 +208,7 @@ struct KeyHelp {
   const char *key, *text;
 };
 
-// As many as there is room for.
+// As many key hints as fit.
 StyledLine key_line(std::initializer_list<KeyHelp> keys, int width) {
   StyledLine line;
   int used = 0;
@@ -283,7 +283,7 @@ const char* label_of(TunePrompt prompt) {
   return "";
 }
 
-// What is typed, or the last message.
+// The text being typed, or the last message.
 StyledLine message_line(const TuneView& view, const TuneLink& link, Picture& picture, int row) {
   if (view.mode == TuneMode::prompt || view.mode == TuneMode::choice) {
     const std::string label = std::string(" ") + label_of(view.prompt);
@@ -298,7 +298,7 @@ StyledLine message_line(const TuneView& view, const TuneLink& link, Picture& pic
   return {{" " + view.message, view.message_is_bad ? Style::bad : Style::good}};
 }
 
-// The list, or the names to choose from in its place.
+// The list, or in its place the names to choose from.
 void add_main(Lines& lines, const TuneModel& model, TuneView& view, const TuneOutbox& outbox,
               int width, int height, bool unicode) {
   if (view.mode == TuneMode::choice) {

@@ -1,4 +1,4 @@
-// The full screen as a picture: what is where at which size.
+// Layout of the full screen for any size.
 #pragma once
 
 #include "apps/tune/view/view.h"
@@ -7,14 +7,14 @@ namespace footfall::apps {
 
 inline constexpr int kLeastWidth = 60, kLeastHeight = 16;  // characters
 
-// What the picture must know beside model and view.
+// State of the connection, for drawing.
 struct TuneLink {
-  double silence = 0.0;  // s since the engine was heard
-  std::string trouble;   // why nobody answers; shown while it is silent
-  bool unicode = true;   // the terminal shows Braille and lines
+  double silence = 0.0;  // s since the last message from the engine
+  std::string trouble;   // why no engine answers; shown during silence
+  bool unicode = true;   // the terminal supports Braille and line characters
 };
 
-// Lines of exactly `width` columns, `height` of them. Scrolls view's lists to what is selected.
+// Returns exactly `height` lines of `width` columns. Scrolls the lists of `view` to the selection.
 Picture draw(const TuneModel& model, TuneView& view, const TuneOutbox& outbox, const TuneLink& link,
              int width, int height);
 

@@ -1,4 +1,4 @@
-// Pages of the full screen: what is different from the file, what a save would change, help.
+// Pages of the full screen: differences from the file, changes that a save would make, help.
 #pragma once
 
 #include <string_view>
@@ -9,9 +9,9 @@
 
 namespace footfall::apps {
 
-// The differences to the file, as a page.
+// The differences from the file, as a page.
 std::vector<StyledLine> comparison(const TuneModel& model);
-// Keys and what they do.
+// Keys and their functions.
 std::vector<StyledLine> help_lines();
 // A unified diff in colours.
 std::vector<StyledLine> diff_lines(std::string_view diff);

@@ -1,4 +1,4 @@
-// Text with styles; see picture.h.
+// Styled text; see picture.h.
 #include "apps/tune/view/picture.h"
 
 #include <wchar.h>
@@ -8,8 +8,7 @@
 namespace footfall::apps {
 namespace {
 
-// One sign of a text: its bytes, and the columns that it takes. What is not UTF-8 has one byte, and
-// is not shown.
+// One character: its bytes and its width in columns. Invalid UTF-8 is one byte, and not printable.
 struct Sign {
   std::size_t bytes = 1;
   int columns = 1;
@@ -27,13 +26,13 @@ Sign sign_at(std::string_view text) {
     if ((byte(i) & 0xC0) != 0x80) return {1, 1, false};
     code = code << 6 | (byte(i) & 0x3F);
   }
-  if (code < 0xA0) return {length, 1, false};  // controls, in two bytes
-  // The width of a sign that the locale does not know is taken as one.
+  if (code < 0xA0) return {length, 1, false};  // C1 control characters, two bytes
+  // The width of a character unknown to the locale is taken as one.
   const int columns = ::wcwidth(static_cast<wchar_t>(code));
   return {length, columns < 0 ? 1 : columns, true};
 }
 
-// As many whole signs as fit; `used`: their columns.
+// As many complete characters as fit; `used`: their columns.
 std::string taken(std::string_view text, int columns, int& used, bool& all) {
   std::string out;
   used = 0;

@@ -1,4 +1,4 @@
-// Text with styles: what a screen shows, before any terminal.
+// Styled text: the content of a screen, independent of a terminal.
 #pragma once
 
 #include <string>
@@ -17,17 +17,17 @@ using StyledLine = std::vector<Span>;
 
 struct Picture {
   std::vector<StyledLine> lines;
-  int cursor_row = -1, cursor_column = -1;  // of the text that is typed; -1: none
+  int cursor_row = -1, cursor_column = -1;  // cursor of a prompt; -1: none
 };
 
-// Columns that a terminal takes for it: two for a wide sign, none for a combining one.
+// Width in terminal columns: two for a wide character, none for a combining one.
 int text_columns(std::string_view text);
-// In exactly that many columns: cut (the last is then `~`), or blanks behind; control characters
-// and what is no UTF-8 as `?`.
+// Truncates (with `~` as last character) or pads to exactly that many columns; control characters
+// and invalid UTF-8 become `?`.
 std::string fitted(std::string_view text, int columns);
-// The same, blanks in front.
+// Same, padded on the left.
 std::string fitted_right(std::string_view text, int columns);
-// The line in exactly that many columns, blanks in the style of the last span.
+// Truncates or pads the line to exactly that many columns, in the style of the last span.
 void fit_line(StyledLine& line, int columns);
 // The text without styles.
 std::string plain_text(const StyledLine& line);

@@ -1,4 +1,4 @@
-// Texts that were typed, taken; see prompt.h.
+// Evaluates prompts; see prompt.h.
 #include "apps/tune/view/prompt.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ bool finish_value(TuneView& view, const TuneModel& model, TuneOutbox& outbox) {
 }
 
 bool finish_command(TuneView& view, const TuneModel& model, TuneOutbox& outbox) {
-  // Names and values hold no blanks but inside brackets and before units: `=` begins a new one.
+  // Names and values have blanks only inside brackets and before units: a `=` begins a new setting.
   std::vector<std::string> texts;
   std::string word;
   for (const char c : view.typed + " ") {

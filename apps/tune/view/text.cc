@@ -1,4 +1,4 @@
-// What the sub-commands of `footfall tune` print; see text.h.
+// Output of the sub-commands of `footfall tune`; see text.h.
 #include "apps/tune/view/text.h"
 
 #include <fmt/format.h>
@@ -20,8 +20,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A table, columns as wide as their longest cell, two blanks between; a column without text is left
-// out, blanks at the end too.
+// A table with columns as wide as their longest cell, separated by two blanks; empty columns and
+// trailing blanks are omitted.
 std::string table_text(const std::vector<std::vector<std::string>>& rows) {
   std::vector<int> widths;
   for (const auto& row : rows) {
@@ -176,7 +176,7 @@ std::vector<WatchColumn> watch_columns(const TuneModel& model,
     for (const TuneEntry& entry : model.entries) {
       const TuneParameter& parameter = parameter_at(model, entry.parameter);
       if (!wanted(entry.name) && !wanted(parameter.name)) continue;
-      // Parameters of a goal are signals too.
+      // Parameters of a goal are signals, too.
       if (find_signal(model, entry.name) >= 0 && wanted(entry.name)) continue;
       add_column(model, columns,
                  {entry.name, core::unit_text(parameter.dimension), -1, entry.slot, 0});

@@ -1,4 +1,4 @@
-// What keys do; see view.h.
+// Effect of keys; see view.h.
 #include "apps/tune/view/view.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 namespace footfall::apps {
 namespace {
 
-constexpr int kPage = 10;  // rows that page keys move
+constexpr int kPage = 10;  // rows moved by page keys
 constexpr double kLarge = 10.0, kSmall = 0.1;
 constexpr double kShortestWindow = 1.0, kLongestWindow = 120.0;  // s
 
@@ -98,7 +98,7 @@ void type_value(TuneView& view, const TuneModel& model, const TuneOutbox& outbox
   begin_prompt(view, TunePrompt::value, exact_values(std::array{value}, parameter.unit));
 }
 
-// Steps that a key makes; 0: it is none of those.
+// Number of steps of a key; 0 for other keys.
 double steps_of(char letter) {
   switch (letter) {
     case '+':

@@ -1,4 +1,4 @@
-// The full screen's state, and what keys do to it. No terminal: keys in, commands out.
+// State of the full screen and the effect of keys. No terminal: keys in, commands out.
 #pragma once
 
 #include <string>
@@ -28,43 +28,43 @@ struct TuneKey {
     redraw
   };
   Code code = text;
-  std::string sign;  // of `text`: one sign, UTF-8
+  std::string sign;  // UTF-8 character of `text`
 };
 
-// What the lower part or the list is used for.
+// Current use of the lower part or the list.
 enum class TuneMode { list, prompt, choice, page, confirm };
-// What is typed or chosen.
+// Purpose of the prompt or choice.
 enum class TunePrompt { filter, value, command, over, overlay, signal, event };
 
-// What the loop around the screen has to do.
+// Action for the loop around the screen.
 enum class TuneCommand { none, compare, preview_save, write, quit, redraw };
 
 struct TuneView {
   TuneMode mode = TuneMode::list;
   TunePrompt prompt = TunePrompt::filter;
   std::string filter;
-  int selected = 0, top = 0;  // rows of the list that is shown
+  int selected = 0, top = 0;  // rows of the displayed list
   std::string typed;
   int choice = 0, choice_top = 0;
   std::string page_title;
   std::vector<StyledLine> page;
   int page_top = 0;
-  std::string overlay;   // the file to save into; empty: where the values come from
-  std::string signal;    // that is plotted
-  double window = 10.0;  // s of the plot
-  double over = 0.0;     // s; for changes by keys
+  std::string overlay;   // file to save to; empty: the files that define the values
+  std::string signal;    // plotted signal
+  double window = 10.0;  // s, time window of the plot
+  double over = 0.0;     // s, ramp duration of changes by keys
   std::string message;
   bool message_is_bad = false;
 };
 
-// Entries that pass the filter, as indices into model.entries.
+// Indices into model.entries of those that pass the filter.
 std::vector<int> shown_entries(const TuneModel& model, const TuneView& view);
-// The selected one of them; -1: none.
+// The selected one of them; -1 if none.
 int selected_entry(const TuneModel& model, const TuneView& view);
-// Names that the choice offers, filtered by what is typed.
+// Names in the choice, filtered by the typed text.
 std::vector<std::string> offered(const TuneModel& model, const TuneView& view);
 
-// A key is pressed.
+// Handles a key.
 TuneCommand press(TuneView& view, const TuneModel& model, TuneOutbox& outbox, const TuneKey& key);
 
 void show_message(TuneView& view, std::string text, bool bad);

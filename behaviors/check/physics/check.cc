@@ -13,11 +13,11 @@
 namespace footfall::behaviors {
 namespace {
 
-// Different configurations that are judged; parallel regions can multiply to more than anybody
-// waits for.
+// Maximum number of configurations evaluated; parallel regions can multiply beyond reasonable time.
 constexpr std::size_t kMaxJudged = 1000;
 
-// Contacts, tasks and internal forces as numbers: two controls that share them are one question.
+// Contacts, tasks and internal forces as numbers; controls with equal signatures are evaluated
+// once.
 std::vector<int> signature(const Behavior& behavior, const ControlSpec& control) {
   std::vector<int> out = control.contacts;
   for (int k = control.tasks.first; k < control.tasks.end(); ++k) {
@@ -35,7 +35,7 @@ std::vector<int> signature(const Behavior& behavior, const ControlSpec& control)
   return out;
 }
 
-// Contacts that the control law would take for points.
+// Reports contacts that the control law would treat as points.
 void check_contact_types(const Behavior& behavior, const ControlSpec& control,
                          PhysicsFindings& findings) {
   for (const int c : control.contacts) {

@@ -1,4 +1,4 @@
-// Controls in force and their succession; see configurations.h.
+// Control configurations and their successors; see configurations.h.
 #include "behaviors/check/physics/configurations.h"
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr std::size_t kMaxPairs = 4096;  // of controls that one transition is judged between
-constexpr int kMaxPassed = 32;           // states passed through in one tick
+constexpr std::size_t kMaxPairs = 4096;  // limit of control pairs for one transition
+constexpr int kMaxPassed = 32;           // maximum number of states passed through in one tick
 
-// Sums of control weights that are possible below a state, each with one of its atomic states.
+// Possible sums of control weights below a state, each with one of its atomic states.
 using Sums = std::map<int, int>;
 
 class Walker {
@@ -37,7 +37,8 @@ class Walker {
     return out;
   }
 
-  // Sums over what lies strictly below `top` while `s` is active, from those of the part at `s`.
+  // Sums over the states strictly below `top` while `s` is active, from those of the subtree at
+  // `s`.
   Sums above(int s, int top, Sums sums) const {
     sums = with_weight(s, sums);
     for (int p = state(s).parent; p >= 0; s = p, p = state(p).parent) {
@@ -50,8 +51,8 @@ class Walker {
   // Sums over `top`, its ancestors and their other regions.
   Sums outside(int top) const { return above(top, -1, {{0, top}}); }
 
-  // Enters `s` for these targets, and by defaults what they leave open. Source: W3C SCXML 1.0,
-  // Appendix D, addDescendantStatesToEnter.
+  // Enters `s` for these targets, and default states elsewhere. Source: W3C SCXML 1.0, Appendix D,
+  // addDescendantStatesToEnter.
   void enter(int s, const std::vector<int>& targets, std::vector<int>& active) const {
     active.push_back(s);
     enter_children(s, targets, active);
@@ -118,7 +119,7 @@ class Walker {
   std::vector<Sums> below_;
 };
 
-// What a transition makes active, deterministic below `domain`.
+// States activated by a transition; deterministic below `domain`.
 struct Arrival {
   int domain = 0;
   std::vector<int> active;  // strictly below the domain
@@ -166,9 +167,9 @@ class Succession {
     }
   }
 
-  // States, one of which is active when the transition is taken. Where only `done` of a compound
-  // state is listened to, its final children; and none if that is without condition, since then
-  // they were passed through when they were entered.
+  // States, one of which is active when the transition is taken. If the transition waits for `done`
+  // of a compound state, these are its final children; none if it has no condition, because they
+  // were then passed through when entered.
   std::vector<int> starts(int index) const {
     const TransitionInfo& transition = b_.transitions[at(index)];
     std::vector<int> parents;
@@ -206,7 +207,7 @@ class Succession {
     return arrival;
   }
 
-  // A transition that certainly follows in the same tick, -1 if there is none.
+  // A transition that is always taken in the same tick, -1 if none.
   int passed_by(const Arrival& arrival) const {
     for (const int s : arrival.active) {
       if (b_.states[at(s)].kind != StateKind::atomic) continue;
@@ -225,7 +226,7 @@ class Succession {
     }
     return -1;
   }
-  // The first unconditional transition of a state on this event (-1: event-less), -1 for none.
+  // The first unconditional transition of a state for this event (-1: event-less), -1 if none.
   int find(int s, int event) const {
     const Range& range = b_.states[at(s)].transitions;
     for (int t = range.first; t < range.end(); ++t) {
@@ -265,7 +266,7 @@ class Succession {
 
   const Behavior& b_;
   Walker walk_;
-  std::vector<int> done_states_;  // by rank of the event: whose done.state it is, -1: none
+  std::vector<int> done_states_;  // by rank of the event: state of its done.state, -1: none
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Gathering over postures and configurations; see findings.h.
+// Collects findings over postures and configurations; see findings.h.
 #include "behaviors/check/physics/findings.h"
 
 #include <fmt/format.h>

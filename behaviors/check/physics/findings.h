@@ -1,6 +1,6 @@
-// PhysicsFindings of the physics checks, gathered over postures and configurations before they
-// become diagnostics: a deficiency in all postures is as bad as it can be, in some it is a warning.
-// Load time only.
+// Findings of the physics checks, collected over postures and configurations before they become
+// diagnostics: a deficiency in all postures has its full severity, in some it is a warning. Load
+// time only.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ namespace footfall::behaviors {
 
 class PhysicsFindings {
  public:
-  // In the posture being judged. `subject` tells apart findings of one id at one place.
+  // Adds a finding in the current posture. `subject` distinguishes findings of one id at one place.
   void add(core::Severity worst, core::Mark mark, std::string_view id, std::string_view subject,
            std::string text);
-  // Ends a configuration that was judged in this many postures.
+  // Ends a configuration that was evaluated in this many postures.
   void settle(int postures);
-  // Each finding once, with the severity of the worst configuration.
+  // Reports each finding once, with the severity of the worst configuration.
   void report(core::Diagnostics& diagnostics) const;
 
  private:
@@ -30,7 +30,7 @@ class PhysicsFindings {
   };
   static Finding* find(std::vector<Finding>& list, const Finding& like);
 
-  std::vector<Finding> open_;  // of the present configuration
+  std::vector<Finding> open_;  // of the current configuration
   std::vector<Finding> settled_;
 };
 

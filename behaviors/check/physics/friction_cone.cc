@@ -1,8 +1,8 @@
 // Internal forces against the friction cone; see parts.h.
 //
-// The robot stands still: every task at its reference, no feedback. The law's contact forces are
-// those of eq. (30) under its torques ([Kim16] Appendix A), with the internal forces of eqs. (39)-
-// (44) in them. On level ground a foot slips if |f_xy| > mu f_z, and pulls if f_z < 0.
+// The robot is at rest: every task at its reference, no feedback. The law's contact forces are
+// those of eq. (30) under its torques ([Kim16] Appendix A), including the internal forces of eqs.
+// (39)-(44). On level ground a foot slips if |f_xy| > mu f_z, and pulls if f_z < 0.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 using core::Severity;
 
-// The foot that a set of internal forces overloads most.
+// The foot that a set of internal forces violates most.
 struct Overload {
   int contact = -1;  // index into the robot's contacts
   double normal = 0.0, tangential = 0.0;
@@ -32,7 +32,7 @@ class ForceCheck {
     int judged = 0;
     for (const model::State& posture : context_.postures) {
       context_.model.update(posture);
-      if (overload(none)) continue;  // it cannot stand there at all
+      if (overload(none)) continue;  // the robot cannot stand in this posture at all
       ++judged;
       for (int k = 0; k < control_.internals.count; ++k) judge(k, all);
     }
@@ -44,7 +44,7 @@ class ForceCheck {
     return context_.behavior.internals[static_cast<std::size_t>(control_.internals.first + k)];
   }
 
-  // What does not hang on measurements, in N at each contact; the rest counts as 0.
+  // Internal forces that do not depend on measurements, in N at each contact; others count as 0.
   std::vector<double> references() const {
     std::vector<double> values;
     for (int k = 0; k < control_.internals.count; ++k) {
@@ -72,11 +72,11 @@ class ForceCheck {
     return worst;
   }
 
-  // An internal force is to blame if the law leaves the cone with it and not without it.
+  // An internal force is the cause if the law leaves the cone with it and not without it.
   void judge(int k, const std::vector<double>& all) {
     std::vector<double> without = all;
     without[static_cast<std::size_t>(k)] = 0.0;
-    if (overload(without)) without.assign(all.size(), 0.0);  // several are: this one by itself
+    if (overload(without)) without.assign(all.size(), 0.0);  // several causes: test this one alone
     std::vector<double> with = without;
     with[static_cast<std::size_t>(k)] = all[static_cast<std::size_t>(k)];
     if (const auto found = overload(with)) {
@@ -88,7 +88,7 @@ class ForceCheck {
     }
   }
 
-  // What an edit may ask for: each parameter at the ends of its range.
+  // Tests each parameter at the ends of its range, because edits may set it there.
   void judge_range(int k, int parameter, std::vector<double> internal) {
     const ParameterInfo& info = context_.behavior.parameters[static_cast<std::size_t>(parameter)];
     if (!info.has_range() || info.variable) return;

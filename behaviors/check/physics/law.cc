@@ -1,4 +1,4 @@
-// Ranks, torques and forces of a law at rest; see law.h.
+// Ranks, torques and forces of a control law at rest; see law.h.
 #include "behaviors/check/physics/law.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// One configuration's control law at rest: its task rows and ranks as the whole-body controller
-// sees them, its joint torques and contact forces. Load time only.
+// One configuration's control law at rest: task rows and ranks as in the whole-body controller,
+// joint torques and contact forces. Load time only.
 #pragma once
 
 #include <memory>
@@ -16,17 +16,17 @@ namespace footfall::behaviors {
 struct TaskRow {
   const TaskSpec* task = nullptr;
   const AxisSpec* axis = nullptr;
-  bool of_joint = false;  // of a task on joints, which serves to fill what others leave
+  bool of_joint = false;  // of a task on joints, used to control remaining freedom
 };
 
-// Ranks of an ordered choice of rows, each as a priority level of its own.
+// Ranks of an ordered list of rows, each as its own priority level.
 struct RowRanks {
-  std::vector<int> added;  // by row: 1 if it adds to what those before it control, else 0
+  std::vector<int> added;  // by row: 1 if independent of the rows before it, else 0
   int covered = 0;         // their sum
-  int actuated = 0;        // directions that torques can move with these contacts
+  int actuated = 0;        // number of directions that torques can move with these contacts
 };
 
-// Torques and forces of one law at rest.
+// Torques and forces of a control law at rest.
 struct RestSolution {
   std::vector<double> tau;                    // N m, by joint, before limits
   std::vector<std::array<double, 3>> forces;  // N, ground on robot, world, by contact of the law
@@ -34,18 +34,18 @@ struct RestSolution {
 
 class PhysicsLaw {
  public:
-  // The model must outlive this and have been updated before each question.
+  // The model must outlive this object and be updated before each call.
   PhysicsLaw(const Behavior& behavior, const model::ControlModel& model);
 
   // All rows of a configuration, by priority, then in document order.
   std::vector<TaskRow> rows(const ControlSpec& control) const;
-  // Each of the rows as a level of its own, in the order given, by the solver's rank rule.
+  // Ranks with each row as its own level, in the given order, by the solver's rank rule.
   RowRanks ranks(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);
-  // By joint: how much of a wish for its acceleration the rows leave to be met, 0 to 1 (diagonal of
-  // the orthogonal projector onto the joint accelerations that are left).
+  // By joint: fraction of a desired acceleration that the rows leave available, 0 to 1 (diagonal of
+  // the orthogonal projector onto the remaining joint accelerations).
   std::vector<double> freedom(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);
-  // The law with every task at its reference and at rest; `internal`: N at each contact, in the
-  // order of control.internals.
+  // The law with every task at rest at its reference; `internal`: N at each contact, in the order
+  // of control.internals.
   RestSolution rest(const ControlSpec& control, const std::vector<double>& internal);
 
  private:

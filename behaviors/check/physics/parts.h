@@ -13,10 +13,10 @@
 
 namespace footfall::behaviors {
 
-// What every part reads.
+// Input of all parts.
 struct PhysicsContext {
   const Behavior& behavior;
-  model::ControlModel& model;  // updated to a posture by whoever asks for one
+  model::ControlModel& model;  // updated by the caller to the posture in question
   PhysicsLaw& law;
   const std::vector<model::State>& postures;  // the first is the nominal one
   PhysicsFindings& findings;
@@ -27,8 +27,7 @@ std::string contacts_text(const Behavior& behavior, const std::vector<int>& cont
 // Name of an axis of a task: `yaw`, `z`, `left_knee`.
 std::string axis_name(const Behavior& behavior, const TaskRow& row);
 
-// Tasks against the freedom that the contacts leave, in the model's posture: axes that no contact
-// can produce (rank.cc).
+// Tasks that no contact can produce, in the model's current posture (rank.cc).
 void check_ranks(PhysicsContext& context, const ControlSpec& control, core::Mark state);
 // Internal forces against the friction cone, in all postures in which the robot can stand without
 // them (friction_cone.cc).

@@ -1,12 +1,12 @@
-// Planners whose step-to-step map diverges; see parts.h.
+// Planners whose step-to-step map is unstable; see parts.h.
 //
-// [Kim16] V-B with E1, E2: from one change of support to the next, about the goal, the CoM's state
-// is multiplied by a matrix A' per axis of the heading frame (behaviors/planners/foot_planner.h).
-// Steps grow without bound where an eigenvalue lies outside -1 .. 1.
+// [Kim16] V-B with E1, E2 of docs/notation.md: from one change of support to the next, relative to
+// the goal, the CoM's state is multiplied by a matrix A' per axis of the heading frame
+// (behaviors/planners/foot_planner.h). Steps grow without bound if an eigenvalue is outside -1 ..
+// 1.
 //   h   the CoM's height: the reference of the state that asks, else that of the nominal posture
-//   T   a step: from the entry of the stride to the change of support that its `switch_in`
-//   predicts,
-//       i.e. the timed states before the one that asks, and `switch_in` at its entry
+//   T   duration of a step: from the entry of the stride to the change of support predicted by
+//       `switch_in`, i.e. the timed states before the one that asks, and `switch_in` at its entry
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ class PlannerCheck {
   };
   const Behavior& b() const { return context_.behavior; }
 
-  // Of a planner's invokes the one that asks for the whole step; others ask for what is left of it.
+  // The invoke of a planner that covers the whole step; others cover only the rest of it.
   std::optional<Timing> longest(int planner) const {
     std::optional<Timing> found;
     for (const InvokeInfo& invoke : b().invokes) {
@@ -57,8 +57,8 @@ class PlannerCheck {
     return found;
   }
 
-  // Time from the entry of the stride to that of the state that asks: states beside it that lead
-  // here by a timer, until one in which the planner is asked about the other foot.
+  // Time from the entry of the stride to that of the state that asks: sibling states that lead here
+  // by a timer, up to one that asks the planner for the other foot.
   double before(const InvokeInfo& invoke) const {
     double time = 0.0;
     std::vector<int> visited = {invoke.state};
@@ -91,7 +91,7 @@ class PlannerCheck {
     });
   }
 
-  // Height of the CoM above the stance foot.
+  // CoM height above the stance foot, m.
   double height(const InvokeInfo& invoke) const {
     const double measured =
         context_.model.com().position[2] - context_.model.point_position(invoke.stance)[2];
@@ -107,7 +107,7 @@ class PlannerCheck {
     }
     return measured;
   }
-  // Tasks of a configuration in which the state is active.
+  // Tasks of a configuration that contains the state.
   std::vector<TaskSpec> tasks_while(int s) const {
     int sum = b().states[at(s)].control_weight;
     for (int p = b().states[at(s)].parent; p >= 0; p = b().states[at(p)].parent) {
@@ -137,7 +137,7 @@ class PlannerCheck {
 
   bool report(const PlannerInfo& info, const FootPlannerSpec& spec, const Timing& timing,
               Severity severity, const std::string& where) {
-    double worst = 1.0;  // with kappa 0 one eigenvalue is 1 exactly: steps drift, but do not grow
+    double worst = 1.0;  // with kappa 0 one eigenvalue is exactly 1: steps drift, but do not grow
     std::size_t axis = 0;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto pair = step_eigenvalues(spec.kappa[k], spec.reversal[k], timing.step,

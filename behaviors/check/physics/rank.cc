@@ -1,8 +1,8 @@
 // Ranks of a configuration's tasks in one posture; see parts.h.
 //
 // A row adds rank if, within the accelerations that torques can produce under the contacts, it is
-// not fixed by the rows before it. What is lost "before" is found by leaving rows out and asking
-// again: the solver's own rank rule decides every time.
+// independent of the rows before it. Conflicting rows are found by omitting rows and computing the
+// ranks again, always by the solver's own rank rule.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,9 +25,9 @@ bool holds(const std::vector<int>& contacts, int point) {
   return std::find(contacts.begin(), contacts.end(), point) != contacts.end();
 }
 
-// Point contacts give no moment about a line through all of them; along a vertical one gravity
-// gives none either, so turning about it can only be lent by the limbs. Limit: as the solver's rank
-// rule, relative to a metre.
+// Point contacts give no moment about a line through all of them; about a vertical line gravity
+// gives none either, so that only the limbs can produce a temporary rotation about it. Limit: the
+// solver's rank rule, relative to 1 m.
 bool has_vertical_moment(const PhysicsContext& context, const std::vector<int>& contacts) {
   const double limit = tasks::WboscOptions{}.rank_tolerance;
   const auto& first = context.model.point_position(contacts.front());
@@ -80,16 +80,16 @@ class RankCheck {
       explain_alone(row);
       return;
     }
-    std::vector<TaskRow> level;  // the rows of its own priority up to it
+    std::vector<TaskRow> level;  // rows of the same priority up to and including this one
     for (std::size_t k = 0; k <= i; ++k) {
       if (rows[k].task->priority == row.task->priority) level.push_back(rows[k]);
     }
-    if (rank_of_last(level) == 1) return;  // what a smaller priority takes is taken by intent
+    if (rank_of_last(level) == 1) return;  // loss to a higher priority is intended
     report_conflict(row, rivals(level));
   }
 
   void explain_alone(const TaskRow& row) {
-    if (row.of_joint) return;  // a joint that contacts hold still is damped already
+    if (row.of_joint) return;  // joints that contacts hold in place are damped already
     if (row.task->type == TaskType::point_position && holds(control_.contacts, row.task->point)) {
       const Behavior& b = context_.behavior;
       context_.findings.add(
@@ -111,7 +111,7 @@ class RankCheck {
                     task_name(context_.behavior, row), axis, place_, why.empty() ? "" : ", ", why));
   }
 
-  // Earlier rows of the level without which the last one could be met.
+  // Earlier rows of the level whose omission makes the last one feasible.
   std::vector<TaskRow> rivals(const std::vector<TaskRow>& level) {
     std::vector<TaskRow> found;
     for (std::size_t k = 0; k + 1 < level.size(); ++k) {
@@ -122,8 +122,8 @@ class RankCheck {
     return found;
   }
 
-  // A weight says what is to give way where a level asks for too much; and all joints of a closed
-  // chain, held or damped together, ask for nothing that contradicts itself.
+  // Conflicts are intended between rows of different weights; and joints of a closed chain that are
+  // all held or damped do not contradict each other.
   static bool is_meant(const TaskRow& row, const std::vector<TaskRow>& others) {
     const auto weighted = [](const TaskRow& r) { return r.axis->weight >= 0; };
     const auto of_joint = [](const TaskRow& r) { return r.of_joint; };

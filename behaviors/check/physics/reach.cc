@@ -1,9 +1,9 @@
-// References against what the robot can do; see parts.h.
+// References against the robot's limits; see parts.h.
 //
-// Heights: a CoM or point can be no higher above the ground than it can be far from a contact point
-// that stands on it; that distance does not depend on how the base lies, only on the joints, and is
-// maximised over their limits. No false alarm on level ground: tilt, other tasks and other feet
-// only lower what can be reached.
+// Heights: the height of the CoM or a point above the ground is at most its distance from a contact
+// point on the ground; that distance depends only on the joints, not on the base orientation, and
+// is maximised over the joint limits. No false alarm on level ground: tilt, other tasks and other
+// feet only reduce the reachable height.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ using core::Severity;
 using tasks::TaskType;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-// The maximum is searched, not derived: coordinate ascent from several postures ends within a
-// fraction of a millimetre of it on legs of a few joints. A part in a hundred is allowed on top.
+// The maximum is found numerically: coordinate ascent from several postures ends within a fraction
+// of a millimetre of it for legs of a few joints. One percent is added as tolerance.
 constexpr double kSlack = 1.01;
 constexpr int kSweeps = 20;
 
@@ -55,13 +55,14 @@ class ReachCheck {
     }
   }
 
-  // The value whatever happens before: with the reference's start at `entry` where it counts.
+  // The value if it is independent of measurements; `entry` is the reference's start value.
   std::optional<double> value(const AxisSpec& axis, double entry) const {
     const Dependence needs = dependence_of(context_.behavior, axis.value);
     if (needs.measured || needs.variable) return std::nullopt;
     return values_.of(axis.value, entry);
   }
-  // Below `low` or above `high` from wherever between them it started: which of the two, and what.
+  // Whether the value is below `low` or above `high` from every start value between them: which of
+  // the two, and by what.
   std::optional<double> outside(const AxisSpec& axis, double low, double high) const {
     const auto from_low = value(axis, low);
     const auto from_high = value(axis, high);
@@ -109,7 +110,7 @@ class ReachCheck {
       highest = std::min(highest, farthest(contact, point));
     }
     const bool com = point < 0;
-    const double lowest = com ? 0.0 : -highest;  // a point may go below, into a ditch
+    const double lowest = com ? 0.0 : -highest;  // a point may be below the ground, in a ditch
     const auto found = outside(axis, lowest, highest);
     if (!found) return;
     add(axis, "z",
@@ -140,7 +141,7 @@ class ReachCheck {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
   }
 
-  // Coordinate ascent: each joint in turn by a step that is halved where it no longer helps.
+  // Coordinate ascent: moves each joint in turn by a step that is halved when it no longer helps.
   double climb(model::State state, int contact, int point) {
     double best = distance(state, contact, point);
     double step = 0.5;

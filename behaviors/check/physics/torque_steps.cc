@@ -1,8 +1,8 @@
 // Torque steps where contacts change; see parts.h.
 //
-// Both laws at rest in the nominal posture: the torque that one asks for in the last tick before a
-// transition, the other in the first after it. A `contact_transition` that moves the feet in
-// question makes the step continuous ([Kim16] eqs. (1)-(2), docs/notation.md E8).
+// Both laws at rest in the nominal posture: the torque of the old law in the last tick before a
+// transition, that of the new law in the first tick after it. A `contact_transition` of the feet in
+// question makes the torque continuous ([Kim16] eqs. (1)-(2), docs/notation.md E8).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -86,7 +86,7 @@ class StepCheck {
                     loses ? "releases in the state entered" : "loads in the state left"));
   }
 
-  // Of a law at rest, internal forces at 0 N.
+  // Torques of a law at rest, with internal forces of 0 N.
   const std::vector<double>& torque(int index) {
     const auto known = torques_.find(index);
     if (known != torques_.end()) return known->second;

@@ -1,4 +1,4 @@
-// Expressions before a run; see values.h.
+// Values of expressions before a run; see values.h.
 #include "behaviors/check/physics/values.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// What expressions are worth before a run: on parameters alone, with nothing measured yet. Load
-// time only.
+// Values of expressions before a run: from parameters alone, without measurements. Load time only.
 #pragma once
 
 #include <optional>
@@ -9,13 +8,13 @@
 
 namespace footfall::behaviors {
 
-// What an expression's value hangs on besides numbers.
+// Inputs that an expression's value depends on.
 struct Dependence {
   bool measured = false;        // signals, clocks, active states
-  bool entry = false;           // what the reference started from
-  bool variable = false;        // a parameter that an action sets
+  bool entry = false;           // start value of the reference
+  bool variable = false;        // a parameter set by an action
   std::vector<int> parameters;  // indices into Behavior::parameters
-  // The same at every tick of every run, if nobody edits a parameter.
+  // Constant over every run, unless a parameter is edited.
   bool fixed() const { return !measured && !entry && !variable; }
 };
 
@@ -28,8 +27,8 @@ class StaticValues {
   explicit StaticValues(const Behavior& behavior);
 
   std::vector<double>& parameters() { return parameters_; }
-  // Nothing if the expression is -1 or its value is not finite. `entry`: what every axis of the
-  // reference started from.
+  // nullopt if the expression is -1 or its value is not finite. `entry`: start value of every axis
+  // of the reference.
   std::optional<double> of(int expression, double entry = 0.0) const;
 
  private:

@@ -1,5 +1,5 @@
-// Contact transitions of feet that are where they cannot have been: released without having been in
-// contact, or loaded while they were.
+// Contact transitions of feet in an impossible condition: released without having been in contact,
+// or loaded while in contact.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// How often a foot is in contact in what can come before.
+// Number of possible preceding controls with and without contact of a foot.
 struct Before {
   int with = 0;
   int without = 0;
@@ -42,7 +42,7 @@ class ContactCheck {
   }
 
  private:
-  // Whether a state of a control configuration leaves room for `s` to be active.
+  // Whether `s` can be active together with the states of a control configuration.
   bool fits(const std::vector<int>& active, int s) const {
     return std::all_of(active.begin(), active.end(), [&](int a) {
       return a == s || behavior_.is_descendant(a, s) || behavior_.is_descendant(s, a) ||
@@ -50,7 +50,7 @@ class ContactCheck {
     });
   }
 
-  // Indices of the controls that may have been in force before the state is entered.
+  // Indices of the controls that may precede the entry of the state.
   std::vector<int> configurations_before(int owner) {
     std::vector<char> before(context_.control_states.size(), 0);
     for (int t = 0; t < static_cast<int>(behavior_.transitions.size()); ++t) {

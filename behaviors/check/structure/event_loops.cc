@@ -1,8 +1,8 @@
-// Loops that events keep going within one tick: each transition raises, by its actions or by
-// reaching a final state, the event that takes the next one, until `micro_steps` cuts them off.
+// Loops sustained by events within one tick: each transition raises, by its actions or by reaching
+// a final state, the event that triggers the next one, until `micro_steps` ends them.
 //
-// What follows a transition is played through, with a queue of internal events as at run time: as
-// far as no condition, time or parallel region has a say. Where one has, nothing is said.
+// The consequences of a transition are simulated with a queue of internal events as at run time, as
+// long as no condition, time or parallel region is involved; otherwise nothing is reported.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,18 +14,18 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr int kMaxLooks = 2'000'000;  // at transitions: beyond, the check is silent, not slow
+constexpr int kMaxLooks = 2'000'000;  // transitions tested; beyond, no check (too slow)
 constexpr std::size_t kMaxPlayedSteps = 64;
 constexpr std::size_t kMaxPlayedQueue = 32;
 
-// Where the machine is between two micro steps.
+// State of the machine between two micro steps.
 struct Place {
   int leaf = -1;
   std::deque<int> queue;  // internal events
   bool operator==(const Place&) const = default;
 };
 
-// A micro step: which transition is taken, and the event that does it, -1: none.
+// A micro step: the transition taken, and the event that triggers it, -1: none.
 struct MicroStep {
   int transition = -1;
   int event = -1;
@@ -55,8 +55,8 @@ class EventLoopCheck {
   const StateInfo& state(int s) const { return chart_.states[at(s)]; }
   const TransitionInfo& transition(int t) const { return chart_.transitions[at(t)]; }
 
-  // The way from a leaf by this transition, until it ends, cannot be known, or comes back to where
-  // it was.
+  // Follows the path from a leaf by this transition until it ends, becomes uncertain, or closes a
+  // loop.
   void follow(int leaf, int first) {
     Place now{leaf, {}};
     std::vector<Place> places;
@@ -75,8 +75,8 @@ class EventLoopCheck {
     }
   }
 
-  // The micro step that surely comes next; its event is taken from the queue. False: none, or none
-  // that is sure.
+  // The certain next micro step; its event is taken from the queue. False if there is none or it is
+  // uncertain.
   bool next(Place& now, MicroStep& step) {
     if (!select(now.leaf, -1, step.transition)) return false;
     step.event = -1;
@@ -89,7 +89,8 @@ class EventLoopCheck {
     return true;
   }
 
-  // The transition that an event (-1: none) takes from a leaf, -1 for none; false: who knows.
+  // Finds the transition that an event (-1: none) triggers from a leaf, -1 for none; false if
+  // uncertain.
   bool select(int leaf, int event, int& found) {
     found = -1;
     for (int s = leaf; s >= 0; s = state(s).parent) {
@@ -108,7 +109,7 @@ class EventLoopCheck {
     return true;
   }
 
-  // Takes a transition; false if what comes of it cannot be known.
+  // Takes a transition; false if the result is uncertain.
   bool take(int t, Place& now) {
     const TransitionInfo& info = transition(t);
     const int domain = exit_domain(chart_, info);
@@ -123,7 +124,7 @@ class EventLoopCheck {
       if (state(s).history >= 0 || state(s).kind == StateKind::parallel) return false;
       if (!act(state(s).on_entry, now)) return false;
       if (state(s).kind == StateKind::final) {
-        if (state(s).parent == 0) return false;  // the run ends
+        if (state(s).parent == 0) return false;  // end of the run
         now.queue.push_back(state(state(s).parent).done_event);
       }
       now.leaf = s;
@@ -136,7 +137,8 @@ class EventLoopCheck {
     return s >= 0;
   }
 
-  // What may fail ends its list: a value out of range, a call.
+  // Runs actions; those that may fail (a value out of range, a call) end their list, so the result
+  // is uncertain.
   bool act(Range actions, Place& now) const {
     for (int k = actions.first; k < actions.end(); ++k) {
       const ActionInfo& action = chart_.actions[at(k)];
@@ -147,7 +149,7 @@ class EventLoopCheck {
     return true;
   }
 
-  // `places`: before each step of the loop. One of event-less transitions only is reported
+  // `places`: state before each step of the loop. Loops of event-less transitions only are reported
   // elsewhere.
   void say(const std::vector<MicroStep>& steps, const std::vector<Place>& places) {
     if (std::all_of(steps.begin(), steps.end(), [](MicroStep step) { return step.event < 0; }))

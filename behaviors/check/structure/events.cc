@@ -1,4 +1,4 @@
-// Events that nothing raises, and events that nothing listens to.
+// Events that are never raised, and events that no transition listens to.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ bool has_final_child(const Chart& chart, int s) {
   return false;
 }
 
-// Whether all of it can be in final states at once.
+// Whether all its parts can be in final states at once.
 bool can_be_final(const Chart& chart, int s) {
   const StateInfo& info = chart.states[at(s)];
   if (info.kind != StateKind::parallel) return has_final_child(chart, s);
@@ -30,9 +30,9 @@ bool can_be_final(const Chart& chart, int s) {
   return true;
 }
 
-// Whether `done.state.` of a state can come. For a parallel one it is raised when a region of its
-// own enters a final child, by its rule; what ends inside a region that is parallel itself does not
-// reach it.
+// Whether `done.state.` of a state can be raised. For a parallel state it is raised, by its rule,
+// when one of its own regions enters a final child; final states in a region that is itself
+// parallel do not count.
 bool can_be_done(const Chart& chart, int s) {
   const StateInfo& info = chart.states[at(s)];
   if (info.kind != StateKind::parallel) return has_final_child(chart, s);
@@ -44,7 +44,7 @@ bool can_be_done(const Chart& chart, int s) {
   return ends && (info.done == DoneRule::any || can_be_final(chart, s));
 }
 
-// Said at its `done`.
+// Reported at its `done`.
 bool names_parallel_region(const Chart& chart, int s) {
   const StateInfo& info = chart.states[at(s)];
   return info.done == DoneRule::region &&
@@ -78,13 +78,13 @@ class EventCheck {
     const core::YamlNode* declared = context_.section("events");
     if (declared == nullptr) return;
     for (const core::YamlEntry& entry : declared->entries) {
-      if (by_actions_.contains(entry.key)) continue;  // said there
+      if (by_actions_.contains(entry.key)) continue;  // reported there
       check_heard(entry.key, entry.key_mark);
     }
   }
 
  private:
-  // Names that a pattern might have meant; for a prefix the prefixes.
+  // Alternatives for a misspelt pattern; prefixes if it is a prefix.
   std::vector<std::string> candidates(bool prefix) const {
     if (!prefix) return {raised_.begin(), raised_.end()};
     std::set<std::string> found;
@@ -141,9 +141,9 @@ class EventCheck {
   LoadContext& context_;
   const Behavior& behavior_;
   std::set<std::string> by_actions_;
-  std::set<std::string> raised_;            // by actions, the engine or from outside
-  std::set<std::string> exact_, prefixes_;  // that transitions and scripts listen to
-  std::set<std::string> meant_;             // what a misspelt one meant: one mistake is one warning
+  std::set<std::string> raised_;            // by actions, by the engine or externally
+  std::set<std::string> exact_, prefixes_;  // patterns of transitions and scripts
+  std::set<std::string> meant_;             // intended by misspelt ones: warn only once
   Findings never_done_;
 };
 

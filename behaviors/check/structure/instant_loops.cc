@@ -1,9 +1,9 @@
-// Loops that are taken within one tick, again and again, until `micro_steps` cuts them off: cycles
-// of event-less transitions that no time and no change of a condition holds back.
+// Loops taken within one tick again and again, until `micro_steps` ends them: cycles of event-less
+// transitions without time and without change of a condition.
 //
 // A cycle without conditions is certain. Otherwise one condition, an expression of signals and
-// parameters, is taken to hold, or not to hold, for the length of a tick; where the way on depends
-// on yet another condition, nothing is said.
+// parameters, is assumed to be true, or false, throughout the tick; if the path depends on a
+// further condition, nothing is reported.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,12 +16,12 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr std::size_t kMaxConditions = 500;  // beyond, the check is silent, not slow
+constexpr std::size_t kMaxConditions = 500;  // beyond, no check (too slow)
 
-// What a transition waits for, if not for one of the conditions that are counted from 0.
+// What a transition waits for, unless it is one of the conditions, which count from 0.
 constexpr int kNever = -1, kAlways = -2, kUnknown = -3;
 
-// What is assumed for a tick: one of the conditions, -1 for none, and whether it holds.
+// Assumption for a tick: index of the condition, -1 for none, and its value.
 struct Assumption {
   int condition = -1;
   bool holds = false;
@@ -48,7 +48,7 @@ class LoopCheck {
  private:
   struct Step {
     int transition = -1;
-    int leaf = -1;  // -1: no step, or none that is sure
+    int leaf = -1;  // -1: no step, or none that is certain
   };
 
   const StateInfo& state(int s) const { return chart_.states[at(s)]; }
@@ -57,8 +57,8 @@ class LoopCheck {
     return given.condition < 0 ? -1 : transition(conditions_[at(given.condition)]).guard;
   }
 
-  // What each transition waits for, computed once: its `after` in ticks (-1: not known), and which
-  // condition that only a new tick, or a `set`, can change.
+  // Computes once what each transition waits for: its `after` in ticks (-1: unknown), and the
+  // condition, if only a new tick or a `set` can change it.
   void look_at_transitions() {
     const int count = static_cast<int>(chart_.transitions.size());
     for (int t = 0; t < count; ++t) {
@@ -94,7 +94,7 @@ class LoopCheck {
     return false;
   }
 
-  // Whether the actions may change what the condition reads.
+  // Whether the actions may change an input of the condition.
   bool changes(Range actions, int guard) const {
     for (int a = actions.first; a < actions.end() && guard >= 0; ++a) {
       const ActionInfo& action = chart_.actions[at(a)];
@@ -103,7 +103,7 @@ class LoopCheck {
     return false;
   }
 
-  // The event-less transition that is taken from a leaf in no time; -1: none, or none that is sure.
+  // The event-less transition taken from a leaf without delay; -1: none, or uncertain.
   int next_transition(int leaf, Assumption given) const {
     for (int s = leaf; s >= 0; s = state(s).parent) {
       const Range own = state(s).transitions;
@@ -140,7 +140,7 @@ class LoopCheck {
   }
 
   void follow_all(Assumption given) {
-    std::vector<int> seen(chart_.states.size(), -1);  // by leaf: where the walk that came by began
+    std::vector<int> seen(chart_.states.size(), -1);  // by leaf: start of the path that visited it
     for (int leaf = 0; leaf < static_cast<int>(chart_.states.size()); ++leaf) {
       if (state(leaf).kind != StateKind::atomic || reach_.with_safe[at(leaf)] == 0) continue;
       int now = leaf;
@@ -166,7 +166,7 @@ class LoopCheck {
       names += fmt::format(" -> '{}'", state(leaf).path);
     } while (leaf != start);
     if (!reported_.insert(first).second) return;
-    // A chart alone is only traced: it is bounded there, and nothing moves.
+    // A pure statechart is only traced: there the loop is bounded, and no robot moves.
     say(first, given.condition < 0 && !in_region && context_.behavior.has_robot,
         fmt::format("{} is a loop that takes no time{}: it needs an `after` or a condition that "
                     "ends it",
@@ -180,7 +180,7 @@ class LoopCheck {
     return fmt::format(" {} '{}'", given.holds ? "while" : "unless", read_marked(when.scalar).text);
   }
 
-  // Actions alone, without `to`: the state stays, and so does the condition.
+  // Actions without `to`: the state is not exited, so the condition does not change.
   void check_staying(int t) {
     const TransitionInfo& info = transition(t);
     if (info.has_event || info.after >= 0 || info.targets.count > 0) return;
@@ -207,7 +207,7 @@ class LoopCheck {
   EntrySet entry_;
   std::vector<std::int64_t> waits_;  // by transition
   std::vector<int> conditions_of_;   // by transition
-  std::vector<int> conditions_;      // a transition that has it
+  std::vector<int> conditions_;      // a transition with that condition
   std::set<int> reported_;           // by first transition
   Findings findings_;
 };

@@ -1,5 +1,5 @@
-// The robot's left or right written out inside a mirrored template, where only arguments are
-// exchanged: both sides would use the same foot.
+// Literal left or right names of the robot inside a mirrored template, where only arguments are
+// mirrored: both sides would use the same foot.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// A name of one side of the robot in a text, and where.
+// A name of one side of the robot in a text, and its position.
 struct SideName {
   std::string name;
   std::string partner;
@@ -51,7 +51,7 @@ class MirrorCheck {
     return out;
   }
 
-  // Names of states, stacks and templates, and texts for people.
+  // Keys whose values name states, stacks or templates, or are documentation.
   static bool names_no_side(std::string_view key) {
     for (const char* other : {"to", "initial", "default", "use", "mirror", "stack", "toward", "doc",
                               "reason", "log", "mark", "args", "type"}) {
@@ -63,7 +63,7 @@ class MirrorCheck {
     return key == "states" || key == "tasks" || key == "internal";
   }
 
-  // Where both sides are named together nothing is one-sided.
+  // Names of both sides together are not one-sided.
   void report(const std::vector<SideName>& names, const std::set<std::string>& beside,
               core::Mark mark, bool quoted) {
     for (const SideName& side : names) {
@@ -81,7 +81,7 @@ class MirrorCheck {
   }
 
   void scan(const core::YamlNode& node, std::string_view under = {}) {
-    std::set<std::string> here;  // names of sides among the scalars and keys of this node
+    std::set<std::string> here;  // one-sided names among the scalars and keys of this node
     const auto add = [&](const std::string& text) {
       for (const SideName& side : side_names(text)) here.insert(side.name);
     };
@@ -105,7 +105,7 @@ class MirrorCheck {
     }
   }
 
-  // Templates and stacks that the text names belong to both sides too.
+  // Templates and stacks named in the text belong to both sides, too.
   void follow(const core::YamlEntry& entry) {
     if (entry.key == "use" || entry.key == "mirror") scan_template(entry.value.scalar);
     if (entry.key != "stack" && entry.key != "toward") return;

@@ -1,4 +1,4 @@
-// States that are never entered, and states that can never be left.
+// States that are never entered, and states that are never exited.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// Everything that can be entered once `pending` has been.
+// Adds all states that can be entered after those in `pending`.
 void spread(const LoadContext& context, std::vector<int> pending, std::vector<char>& entered) {
   const Chart& chart = context.behavior;
   EntrySet entry(chart);
@@ -34,7 +34,8 @@ class UnreachableCheck {
   UnreachableCheck(LoadContext& context, const Reach& reach)
       : context_(context), chart_(context.behavior), entered_(reach.with_safe) {}
 
-  // One that others lead to is named with those: one missing transition is one warning.
+  // A state reached from another unreachable one is reported with it: one missing transition gives
+  // one warning.
   void report() {
     for (int s = 1; s < count(); ++s) {
       if (entered_[at(s)] == 0 && entered_[at(state(s).parent)] != 0) lost_.push_back(s);
@@ -51,7 +52,7 @@ class UnreachableCheck {
                     fmt::format("'{}' is never entered: nothing leads to it{}", state(s).path,
                                 followers(s, before, explained)));
     }
-    for (int s = 1; s < count(); ++s) {  // the same text, elsewhere, may well be entered
+    for (int s = 1; s < count(); ++s) {  // another instance of the same text may be reachable
       if (entered_[at(s)] != 0) findings.look(state(s).mark, false, {});
     }
     for (const auto& finding : findings.found()) {
@@ -63,7 +64,7 @@ class UnreachableCheck {
   int count() const { return static_cast<int>(chart_.states.size()); }
   const StateInfo& state(int s) const { return chart_.states[at(s)]; }
 
-  // The outermost state that is never entered around this one.
+  // The outermost unreachable state that contains this one.
   int lost_around(int s) const {
     while (entered_[at(state(s).parent)] == 0) s = state(s).parent;
     return s;
@@ -97,10 +98,10 @@ class UnreachableCheck {
   const Chart& chart_;
   const std::vector<char>& entered_;
   std::vector<int> lost_;
-  std::vector<char> led_;  // by state: another one that is never entered leads to it
+  std::vector<char> led_;  // by state: another unreachable state leads to it
 };
 
-// States that nothing leads out of. The state of `safe`, and what only it leads to, may be such.
+// States without exit. The state of `safe`, and states reached only from it, may be such.
 class DeadEndCheck {
  public:
   DeadEndCheck(LoadContext& context, const Reach& reach)
@@ -134,8 +135,8 @@ class DeadEndCheck {
     return s != safe && !chart_.is_descendant(s, safe);
   }
 
-  // A state with transitions of its own that only act is there to react; a region that is only ever
-  // in one state has no way that could end.
+  // A state whose transitions only run actions is intended to stay; a region with a single state
+  // cannot end either.
   bool is_dead_end(int s) const {
     return state(s).kind == StateKind::atomic && state(s).transitions.count == 0 &&
            !can_be_left(s) && places_[at(region_of(s))] > 1;
@@ -145,7 +146,7 @@ class DeadEndCheck {
     return chart_.transitions[at(t)].targets.count > 0 && !never_true(context_, t);
   }
 
-  // By parallel state: a transition inside one of its regions leaves all of them.
+  // By parallel state: a transition inside one of its regions exits all of them.
   void find_escapes() {
     escapes_.assign(chart_.states.size(), 0);
     for (int t = 0; t < static_cast<int>(chart_.transitions.size()); ++t) {
@@ -170,13 +171,13 @@ class DeadEndCheck {
     return false;
   }
 
-  // The region that a state is in, the root without one.
+  // The region that contains a state, else the root.
   int region_of(int s) const {
     while (s > 0 && state(state(s).parent).kind != StateKind::parallel) s = state(s).parent;
     return s;
   }
 
-  // By region, how many states there are to be in.
+  // By region, the number of its states.
   void count_places() {
     places_.assign(chart_.states.size(), 0);
     for (int s = 0; s < count(); ++s) {

@@ -1,4 +1,4 @@
-// Transitions that are never taken because another one is, whenever they could be.
+// Transitions that are never taken, because another one has precedence whenever they are enabled.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 namespace footfall::behaviors {
 namespace {
 
-constexpr int kLookBack = 200;  // transitions of one state: beyond, the check is silent, not slow
+constexpr int kLookBack = 200;  // transitions of one state; beyond, no check (too slow)
 
-// Every event that `second` names is one of `first`.
+// Whether every event that matches `second` matches `first`.
 bool event_covers(const std::string& first, std::string second) {
   if (first == second) return true;
   if (second == "*") return false;
@@ -63,7 +63,7 @@ class ShadowCheck {
   }
 
   bool covers_events(int first, int second) const {
-    if (!transition(first).has_event) {  // conditions go before events
+    if (!transition(first).has_event) {  // event-less transitions precede those with events
       const bool waits = transition(first).after >= 0;
       return transition(first).targets.count > 0 && !(waits && transition(second).has_event);
     }
@@ -76,8 +76,8 @@ class ShadowCheck {
         });
   }
 
-  // An `after` of the same state that is never later. Without event it is taken once per entry, so
-  // it must also lead out of the state.
+  // An `after` of the same state that never expires later. Without event it is taken once per
+  // entry, so it must also exit the state.
   bool covers_time(int first, int second) const {
     const TransitionInfo &a = transition(first), &b = transition(second);
     if (a.after < 0) return true;
@@ -88,7 +88,7 @@ class ShadowCheck {
     return early && late && *early <= *late;
   }
 
-  // Whenever `second` is enabled, so is `first`.
+  // Whether `first` is enabled whenever `second` is.
   bool covers(int first, int second) const {
     const bool guard = always_true(context_, first) ||
                        (!never_true(context_, first) &&
@@ -107,7 +107,7 @@ class ShadowCheck {
     return -1;
   }
 
-  // The transition that goes before in the first leaf below; -1 unless every leaf has one.
+  // The transition with precedence in the first leaf below; -1 unless every leaf has one.
   int in_inner_states(int t) const {
     const int source = transition(t).source;
     int example = -1;
@@ -134,7 +134,7 @@ class ShadowCheck {
   const Chart& chart_;
   const Reach& reach_;
   std::vector<std::vector<std::string>> patterns_;  // by transition
-  std::vector<int> leaves_;                         // that can be entered
+  std::vector<int> leaves_;                         // reachable leaves
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The order of the structural checks, and what they share; see structure.h.
+// Order of the structural checks, and functions that they share; see structure.h.
 #include "behaviors/check/structure/structure.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ int exit_domain(const Chart& chart, const TransitionInfo& transition) {
 
 bool never_true(const LoadContext& context, int transition) {
   const auto value = context.constant_value(context.behavior.transitions[at(transition)].guard);
-  return value && !(*value < 0.0 || *value > 0.0);  // what is not a number is false too
+  return value && !(*value < 0.0 || *value > 0.0);  // NaN is false, too
 }
 
 bool always_true(const LoadContext& context, int transition) {
@@ -96,7 +96,7 @@ const core::YamlNode& transition_keys(const LoadContext& context, int transition
 
 bool made_by_mirror(const LoadContext& context, int transition) {
   const core::YamlNode& keys = transition_keys(context, transition);
-  const core::YamlNode* on = keys.find("on");  // the name of the template is its only place
+  const core::YamlNode* on = keys.find("on");  // the template's name is the only position available
   return on != nullptr && on->mark.line == keys.mark.line && on->mark.column == keys.mark.column;
 }
 

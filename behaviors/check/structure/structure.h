@@ -1,10 +1,10 @@
-// What `footfall check` says about the structure of a behavior that compiled: states and
-// transitions that cannot play a part, loops in no time, phases too short, names that nothing uses.
-// Load time only; one small file for each kind of finding.
+// Structural checks of `footfall check` for a behavior that compiled: useless states and
+// transitions, loops without delay, phases that are too short, unused names. Load time only; one
+// small file for each kind of finding.
 //
-// Every check is sound, not complete: it is silent where it cannot be sure. Conditions on signals
-// count as possible, events as possible. Called for a behavior without errors only: a mistake that
-// is an error has consequences that are none of their own.
+// Every check is sound, not complete: it reports nothing if uncertain. Conditions on signals and
+// events count as possible. Called only for a behavior without errors, because an error has
+// consequences that are not mistakes themselves.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@
 
 namespace footfall::behaviors {
 
-// The states that one entry enters, descendants and ancestors below `ancestor` included, as W3C
-// SCXML's computeEntrySet; a history state stands for itself and its default.
+// The states entered by one entry, including descendants, and ancestors below `ancestor`, as in W3C
+// SCXML's computeEntrySet; a history state counts as itself and its default.
 class EntrySet {
  public:
   explicit EntrySet(const Chart& chart) : chart_(chart), entered_(chart.states.size()) {}
   const std::vector<int>& of(Range targets, int ancestor);
-  // Of a transition with targets, from its domain.
+  // For a transition with targets, from its domain.
   const std::vector<int>& of(const TransitionInfo& transition);
-  // Of the run's start.
+  // For the start of the run.
   const std::vector<int>& of_start();
 
  private:
@@ -42,42 +42,42 @@ class EntrySet {
   std::vector<int> list_;
 };
 
-// The states that can be entered: from the start, and from the root's `safe` too.
+// The reachable states: from the start, and from the root's `safe`, too.
 struct Reach {
   std::vector<char> from_start;
   std::vector<char> with_safe;
 };
 Reach find_reach(const LoadContext& context);
 
-// The state that a transition with targets exits everything below; a history target stands for
-// itself, so that at run time it is this state or one inside it.
+// The state below which a transition with targets exits everything; a history target counts as
+// itself, so that at run time the domain is this state or one inside it.
 int exit_domain(const Chart& chart, const TransitionInfo& transition);
-// The `when` of this transition is a constant that is false.
+// Whether the `when` of this transition is constantly false.
 bool never_true(const LoadContext& context, int transition);
-// Nothing holds this transition back once its event and time have come.
+// Whether this transition is always taken once its event and time have occurred.
 bool always_true(const LoadContext& context, int transition);
-// Both expressions are the same code; -1 is the same as -1 only.
+// Whether both expressions have the same code; -1 equals only -1.
 bool same_expression(const Chart& chart, int a, int b);
-// The value of an expression of numbers and parameters, as the file has them; nothing if an action
-// sets one of them.
+// The value of an expression of numbers and parameters, with the file's values; nullopt if an
+// action sets one of them.
 std::optional<double> planned_value(const LoadContext& context, int expression);
-// A time as planned_value, in ticks.
+// planned_value of a time, in ticks.
 std::optional<std::int64_t> planned_ticks(const LoadContext& context, int expression);
-// `file:line:column` of a mark, for a message that points to a second place.
+// `file:line:column` of a mark, for a message that refers to a second place.
 std::string place_of(const LoadContext& context, core::Mark mark);
 
-// Findings by place. A template's text stands for several states: what is said about the text must
+// Findings by position. A template's text belongs to several states: a finding about the text must
 // hold for all of them.
 class Findings {
  public:
-  // What was looked at, at its place, and whether the check found it.
+  // Adds a checked position, and whether the check found a problem there.
   void look(core::Mark mark, bool found, std::string text);
   struct Finding {
     core::Mark mark;
     bool found = false;
-    std::string text;  // of the first
+    std::string text;  // of the first finding
   };
-  // One for each place where everything was found, in the order they were looked at.
+  // One for each position at which all checks found a problem, in the order of look().
   std::vector<Finding> found() const;
 
  private:
@@ -85,12 +85,12 @@ class Findings {
   std::map<std::tuple<int, int, int>, std::size_t> by_place_;
 };
 
-// The YAML of a transition: its map, the keys of its state for the timed one.
+// The YAML of a transition: its map, or the keys of its state for the timed one.
 const core::YamlNode& transition_keys(const LoadContext& context, int transition);
-// Whether a transition was made by `mirror`, not written.
+// Whether a transition was created by `mirror`.
 bool made_by_mirror(const LoadContext& context, int transition);
 
-// The checks, with the ids they report under; warnings, but for a loop that is certain.
+// The checks and their ids; warnings, except for a certain loop.
 void check_reachability(LoadContext& context, const Reach& reach);  // unreachable, dead-end
 void check_transitions(LoadContext& context, const Reach& reach);   // never-true, re-entry
 void check_shadowed(LoadContext& context, const Reach& reach);      // shadowed
@@ -102,7 +102,7 @@ void check_events(LoadContext& context);  // never-raised, unheard
 void check_unused(LoadContext& context);  // unused
 void check_mirror(LoadContext& context);  // not-mirrored
 
-// All of them, reported into the context.
+// Runs all checks; they report to the context.
 void check_structure(LoadContext& context);
 
 }  // namespace footfall::behaviors

@@ -1,5 +1,5 @@
-// Times that do not fit: shorter than the robot can tell, or longer than the state they are in.
-// Parameters count with the values that the file (or --set) gives them.
+// Unsuitable times: shorter than the robot can resolve, or longer than their state. Parameters have
+// the values of the file (or of --set).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ class TimingCheck {
  private:
   double rate() const { return static_cast<double>(behavior_.rate_mhz) / 1e3; }
 
-  // How long a state lasts at most, by its own transitions, in ticks.
+  // Maximum duration of a state, from its own transitions, in ticks.
   std::optional<std::int64_t> duration(int state) const {
     const Range own = behavior_.states[at(state)].transitions;
     std::optional<std::int64_t> shortest;
@@ -56,8 +56,8 @@ class TimingCheck {
                           : "");
   }
 
-  // A state that says how long it lasts; with a condition, or with 0 s where it controls nothing of
-  // its own, the time is no phase.
+  // Checks a state with a fixed duration; with a condition, or with 0 s and without control of its
+  // own, the time is not a phase.
   void check_phase(int t) {
     const TransitionInfo& transition = behavior_.transitions[at(t)];
     if (transition.after < 0 || transition.has_event || transition.targets.count == 0) return;
@@ -87,7 +87,7 @@ class TimingCheck {
     look_cut_off(over->mark, spec.owner, spec.over, "this contact transition");
   }
 
-  // One that is retargeted may well be carried on by the state that follows.
+  // A retargeted trajectory may be continued by the next state.
   void check_trajectory(const ReferenceSpec& reference) {
     if (reference.over < 0) return;
     look_short(reference.over_mark, "this trajectory", planned_ticks(context_, reference.over));

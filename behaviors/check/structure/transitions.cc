@@ -1,4 +1,4 @@
-// Transitions one by one: conditions that are never true, and regions that are re-entered unsaid.
+// Checks of single transitions: conditions that are never true, and regions re-entered implicitly.
 #include <fmt/format.h>
 
 #include "behaviors/check/structure/structure.h"
@@ -19,7 +19,7 @@ bool inside(const Chart& chart, const TransitionInfo& transition, int state) {
   return true;
 }
 
-// Whether the targets say where every region of the parallel state goes.
+// Whether the targets define the destination of every region of the parallel state.
 bool names_all_regions(const Chart& chart, const TransitionInfo& transition, int parallel) {
   for (int c = parallel + 1; c < chart.states[at(parallel)].end; c = chart.states[at(c)].end) {
     if (chart.states[at(c)].history >= 0) continue;
@@ -33,7 +33,8 @@ bool names_all_regions(const Chart& chart, const TransitionInfo& transition, int
   return true;
 }
 
-// The parallel state around source and targets that is left and re-entered whole, -1 for none.
+// The parallel state around source and targets that is exited and re-entered as a whole, -1 if
+// none.
 int re_entered(const Chart& chart, const TransitionInfo& transition) {
   if (transition.targets.count == 0 || transition.domain < 0) return -1;
   for (int p = transition.source; p >= transition.domain; p = chart.states[at(p)].parent) {

@@ -1,4 +1,4 @@
-// Names that are given and never used: more often than not something else was misspelt.
+// Unused names, usually a sign of a misspelt one elsewhere.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ void collect_names(const std::string& text, std::set<std::string>& names) {
   }
 }
 
-// Every `$name` in the text of a tree.
+// Collects every `$name` in the text of a tree.
 void collect_names(const core::YamlNode& node, std::set<std::string>& names) {
   collect_names(node.scalar, names);
   for (const core::YamlNode& item : node.items) collect_names(item, names);
@@ -64,7 +64,7 @@ bool is_mirrored(const LoadContext& context, const std::string& name) {
                      [&](const auto& mirrored) { return mirrored.first == name; });
 }
 
-// An argument may also be used in a stack that the template's states name; the first one of a
+// An argument may also be used in a stack named by the template's states; the first argument of a
 // mirrored template names the two states.
 void check_arguments(LoadContext& context, const core::YamlEntry& entry,
                      const std::set<std::string>& in_stacks) {
@@ -90,7 +90,7 @@ void check_templates(LoadContext& context) {
   if (const core::YamlNode* stacks = context.section("stacks")) collect_names(*stacks, in_stacks);
   for (const core::YamlEntry& entry : templates->entries) {
     const auto& used = context.used_templates;
-    if (std::find(used.begin(), used.end(), entry.key) == used.end()) continue;  // said elsewhere
+    if (std::find(used.begin(), used.end(), entry.key) == used.end()) continue;  // reported
     check_arguments(context, entry, in_stacks);
   }
 }

@@ -40,7 +40,7 @@ void load_raise(LoadContext& context, const core::YamlNode& node) {
 
 void set_component(LoadContext& context, const ParameterInfo& info, int component,
                    const core::YamlNode& node, const ValueScope& scope) {
-  // A parameter written without a unit takes any: `goal: [0, 0]` is set to `[30 cm, 0 cm]`.
+  // A parameter without unit accepts any dimension: `goal: [0, 0]` may be set to `[30 cm, 0 cm]`.
   const auto dimension = info.bare ? std::nullopt : std::optional(info.dimension);
   const int expression = context.compile_value(node, dimension, scope);
   const auto value = context.constant_value(expression);
@@ -87,7 +87,7 @@ void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope
   }
 }
 
-// TEXT with `{expr}` fields; `{{` and `}}` are braces.
+// TEXT with `{expr}` fields; `{{` and `}}` are literal braces.
 void load_log(LoadContext& context, const core::YamlNode& node, const ValueScope& scope) {
   const auto text = core::read_text(node, context.diagnostics, "a text to log");
   if (!text) return;
@@ -130,7 +130,7 @@ void load_mark(LoadContext& context, const core::YamlNode& node) {
   add(context, {ActionKind::mark, mark, -1, 0.0, 0.0});
 }
 
-// A registered C++ function, or one of a script.
+// A registered C++ function, or a script function.
 void load_call(LoadContext& context, const core::YamlNode& node) {
   const auto name = core::read_text(node, context.diagnostics, "the name of a function");
   if (!name) return;

@@ -1,4 +1,4 @@
-// The table of events, and which of them enable which transition.
+// The event table, and which events enable which transition.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ void check_event_name(LoadContext& context, const std::string& name, core::Mark 
 
 constexpr std::string_view kDone = "done.state.";
 
-// A prefix is whole words: `fault.*`, not `fault*`.
+// A prefix consists of whole parts: `fault.*`, not `fault*`.
 bool check_prefix(LoadContext& context, const core::YamlNode& node) {
   std::string stem = node.scalar.substr(0, node.scalar.find('*'));
   if (stem.ends_with('.')) stem.pop_back();
@@ -129,7 +129,7 @@ void load_patterns(LoadContext& context, int state, const core::YamlNode& on, in
 void finish_events(LoadContext& context) {
   Behavior& behavior = context.behavior;
   for (std::size_t p = behavior.changed_events.size(); p < behavior.parameters.size(); ++p) {
-    behavior.changed_events.push_back(  // gains: known only now
+    behavior.changed_events.push_back(  // their number is known only after gains are loaded
         context.add_event("parameter.changed." + behavior.parameters[p].name));
   }
   if (!context.script_patterns.empty()) {

@@ -1,4 +1,4 @@
-// `invoke:` of a state: which planner is asked when, and what a late answer is replaced by.
+// `invoke:` of a state: when a planner is asked, and the fallback for a late answer.
 #include <fmt/format.h>
 
 #include "behaviors/language/language.h"
@@ -21,7 +21,7 @@ int find_planner(LoadContext& context, const core::YamlNode& node) {
   return -1;
 }
 
-// Two states that are active at once may not ask the same planner: each would get the other's plan.
+// States that can be active at the same time must not ask the same planner: the plans would mix.
 void check_asked_once(LoadContext& context, const core::YamlNode& node, const InvokeInfo& invoke) {
   const auto& states = context.behavior.states;
   for (const InvokeInfo& other : context.behavior.invokes) {
@@ -35,7 +35,7 @@ void check_asked_once(LoadContext& context, const core::YamlNode& node, const In
   }
 }
 
-// A time in the state, or a part of its `after`.
+// A time in the state, or a fraction of its `after`.
 void read_at(LoadContext& context, const core::YamlNode& at, const core::YamlNode& keys,
              const ValueScope& scope, InvokeInfo& invoke) {
   const auto quantity = at.is_scalar() ? core::parse_quantity(at.scalar) : std::nullopt;

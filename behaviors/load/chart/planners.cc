@@ -21,8 +21,8 @@ void read_pair(LoadContext& context, const core::YamlNode& map, const char* key,
   if (values) out = {(*values)[0], (*values)[1]};
 }
 
-// What kappa may be where nobody says otherwise: [Kim16] prints it with the wrong sign, and a
-// negative one makes every step longer than the last.
+// Default range of kappa. [Kim16] prints kappa with the wrong sign, and with a negative kappa every
+// step is longer than the last one.
 constexpr std::array<double, 2> kKappaRange = {0.0, 1.0};
 
 void check_kappa(LoadContext& context, core::Mark mark, const double* values, int count,
@@ -66,7 +66,8 @@ void read_kappa_parameter(LoadContext& context, const core::YamlNode& node, Plan
   planner.kappa_size = info.size;
 }
 
-// `[x, y]`, one number, by axis, `$parameter`, or any of the first under `value` with a `range`.
+// `[x, y]`, one number, by axis, `$parameter`, or any of the first three under `value` with a
+// `range`.
 void read_kappa(LoadContext& context, const core::YamlNode& map, PlannerInfo& planner) {
   const core::YamlNode* node = map.find("kappa");
   if (node == nullptr) return;
@@ -121,7 +122,7 @@ void read_goal(LoadContext& context, const core::YamlNode& map, PlannerInfo& pla
                   fmt::format("expected a length, got {}", core::dimension_name(info.dimension)));
   } else {
     planner.goal_slot = info.slot;
-    info.dimension = core::kLength;  // `[0, 0]` is a place from here on
+    info.dimension = core::kLength;  // from here on `[0, 0]` is a position
     info.bare = false;
   }
 }

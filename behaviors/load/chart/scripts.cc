@@ -1,5 +1,5 @@
-// `scripts`: files of Lua, read and run once at load, so that their mistakes and the names of their
-// functions are known before anything moves.
+// `scripts`: Lua files, read and run once at load, so that errors and function names are known
+// before the robot moves.
 #include "behaviors/load/chart/scripts.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uintmax_t kLargestScript = 1024 * 1024;  // bytes
 
-// The file beside the one in which it is named.
+// Path relative to the file that names the script.
 std::string script_path(const core::YamlNode& node, const core::Diagnostics& diagnostics) {
   const std::filesystem::path beside = node.mark.file < 0 ? "" : diagnostics.file(node.mark.file);
   return (beside.parent_path() / node.scalar).string();

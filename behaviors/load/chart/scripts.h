@@ -1,5 +1,5 @@
-// Files of Lua that a behavior or a scenario names: read and run once at load, so that mistakes are
-// found before anything moves.
+// Lua files of a behavior or a scenario, read and run once at load, so that errors are found before
+// the robot moves.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@
 
 namespace footfall::behaviors {
 
-// `FILE` or `[FILES]`, each beside the file in which it is named. What cannot be read is reported.
+// Reads `FILE` or `[FILES]`, relative to the file that names them. Unreadable files are reported.
 std::vector<ScriptFile> read_script_files(const core::YamlNode& node,
                                           core::Diagnostics& diagnostics);
-// Defines what the files define; their mistakes are reported at their own places.
+// Runs the files, which define functions and handlers; errors are reported at their own positions.
 void run_script_files(const std::vector<ScriptFile>& files, Script& script,
                       core::Diagnostics& diagnostics);
 

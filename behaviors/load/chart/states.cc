@@ -1,4 +1,4 @@
-// The tree of states as flat arrays: kinds, initial states, history, names.
+// The state tree as flat arrays: kinds, initial states, history, names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -139,7 +139,7 @@ void load_history(LoadContext& context, int s) {
     info.initial = load_targets(context, s, *node);
   } else if (parent.kind == StateKind::compound) {
     info.initial = parent.initial;
-  } else {  // of a parallel state: all its regions
+  } else {  // parallel state: enter all its regions
     info.initial.first = static_cast<int>(context.behavior.targets.size());
     for (int c = info.parent + 1; c < parent.end; c = info_of(context, c).end) {
       if (info_of(context, c).history < 0) context.behavior.targets.push_back(c);
@@ -204,7 +204,7 @@ void load_root(LoadContext& context) {
 
 }  // namespace
 
-// Targets of a transition, `initial` or `default`: states that can be active together.
+// Targets of a transition, `initial` or `default`: states that can be active at the same time.
 Range load_targets(LoadContext& context, int from, const core::YamlNode& node) {
   Range range{static_cast<int>(context.behavior.targets.size()), 0};
   std::vector<const core::YamlNode*> items;

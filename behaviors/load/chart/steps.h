@@ -1,5 +1,5 @@
-// Steps of the loader that make the chart: states, events, transitions, planners, scripts. Load
-// time only.
+// Loader steps that build the chart: states, events, transitions, planners, scripts. Load time
+// only.
 #pragma once
 
 #include "behaviors/load/context.h"
@@ -14,11 +14,11 @@ void load_transitions(LoadContext& context);  // transitions.cc
 void load_invokes(LoadContext& context);      // invokes.cc
 void finish_events(LoadContext& context);     // events.cc
 
-// Events of a transition's `on`, into Chart::patterns (events.cc).
+// Loads the events of a transition's `on` into Chart::patterns (events.cc).
 void load_patterns(LoadContext& context, int state, const core::YamlNode& on, int transition);
-// Actions of a list (on_entry, on_exit, do) appended to the chart (actions.cc).
+// Appends a list of actions (on_entry, on_exit, do) to the chart (actions.cc).
 Range load_actions(LoadContext& context, const core::YamlNode& node, int state);
-// Targets of a transition, `initial` or `default` (states.cc).
+// Loads the targets of a transition, `initial` or `default` (states.cc).
 Range load_targets(LoadContext& context, int from, const core::YamlNode& node);
 
 }  // namespace footfall::behaviors

@@ -1,4 +1,4 @@
-// Transitions, in document order, the timed `after` + `to` of a state last.
+// Transitions in document order; the timed `after` + `to` of a state comes last.
 #include <fmt/format.h>
 
 #include "behaviors/language/language.h"
@@ -20,7 +20,7 @@ void finish_domain(LoadContext& context, TransitionInfo& transition) {
       transition.targets.count);
 }
 
-// `node`: its map, nullptr for what a state's own keys say.
+// `node`: the transition's map, nullptr for a state's own `after` + `to`.
 void add_transition(LoadContext& context, TransitionInfo transition, const core::YamlNode* node) {
   finish_domain(context, transition);
   context.transition_nodes.push_back(node);
@@ -115,7 +115,7 @@ void load_safe(LoadContext& context) {
   if (safe == nullptr) return;
   TransitionInfo transition;
   transition.mark = safe->mark;
-  transition.has_event = true;  // that no event matches: taken by request only
+  transition.has_event = true;  // no event matches: taken only on request
   transition.targets = load_targets(context, 0, *safe);
   transition.reason = "safe";
   if (transition.targets.count == 0) return;

@@ -1,4 +1,4 @@
-// Values by axis as expressions; see axes.h.
+// Compiles values by axis to expressions; see axes.h.
 #include "behaviors/load/control/axes.h"
 
 #include <fmt/format.h>
@@ -110,7 +110,7 @@ std::vector<int> compile_axes(LoadContext& context, const core::YamlNode& node,
              !compile_signals(context, node, axes, out)) {
     for (std::size_t k = 0; k < out.size(); ++k) {
       out[k] = compile_axis(context, node, axes, k);
-      if (out[k] < 0) break;  // the same words, the same error
+      if (out[k] < 0) break;  // further errors would repeat the first one
     }
   }
   return out;

@@ -9,21 +9,21 @@
 
 namespace footfall::behaviors {
 
-// Where the values of a task's axes are written, and what they are.
+// Context of the values of a task's axes.
 struct AxesScope {
   const std::vector<std::string>& names;
-  const std::vector<core::Dimension>& positions;  // of the task's axes: what `entry` is
-  std::vector<core::Dimension> dimensions;        // of the values
-  int owner = 0;                                  // state whose `t` it is
+  const std::vector<core::Dimension>& positions;  // of the task's axes and of `entry`
+  std::vector<core::Dimension> dimensions;        // dimensions of the values
+  int owner = 0;                                  // state whose clock is `t`
   bool joints = false;
-  bool entry = false;  // `entry` means something here
+  bool entry = false;  // `entry` is allowed
 };
 
 // The positions' dimensions times `factor`.
 std::vector<core::Dimension> scaled(const std::vector<core::Dimension>& positions,
                                     core::Dimension factor);
 
-// One expression an axis; -1 where nothing is said, which only `partial` allows, or after an error.
+// One expression an axis; -1 for an omitted axis, allowed only with `partial`, or after an error.
 std::vector<int> compile_axes(LoadContext& context, const core::YamlNode& node,
                               const AxesScope& axes, bool partial);
 

@@ -1,5 +1,5 @@
-// One ControlSpec for each combination of active states that differ in control, numbered so that
-// the sum of the active states' weights is its index: the tick finds it without a search.
+// One ControlSpec for each combination of active states that differ in control. They are numbered
+// such that the sum of the active states' weights is the index: the tick needs no search.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -64,8 +64,8 @@ class ControlLoader {
 
   bool controls(int c) const { return controls_[static_cast<std::size_t>(c)]; }
 
-  // Combinations below a state: 1 where nothing below it controls. Children of a compound state
-  // that say nothing, nor anything below them, are one and the same: the first combination.
+  // Counts combinations below a state: 1 if no state below it defines control. All children of a
+  // compound state that define no control, nor any state below them, share the first combination.
   void count_configurations(int s) {
     const bool parallel = state(s).kind == StateKind::parallel;
     bool below = false;
@@ -91,7 +91,7 @@ class ControlLoader {
     return true;
   }
 
-  // Whether some child of a compound state says nothing.
+  // Whether a child of a compound state defines no control.
   bool has_silent(int s) const {
     for (int c = s + 1; c < state(s).end; c = state(c).end) {
       if (state(c).history < 0 && !controls(c)) return true;
@@ -116,7 +116,7 @@ class ControlLoader {
     }
   }
 
-  // The states of combination `id` below s, as far as they control.
+  // Collects the states of combination `id` below s that define control.
   void collect(int s, int id, std::vector<int>& active) const {
     active.push_back(s);
     if (collapsed(s)) return;
@@ -211,7 +211,7 @@ class ControlLoader {
     behavior_.tasks.insert(behavior_.tasks.end(), specs.begin(), specs.end());
   }
 
-  // The same words in the same states are compiled once.
+  // The same source in the same states is compiled only once.
   std::optional<TaskSpec> cached_task(const DraftItem& item, const Draft& draft) {
     std::vector<std::pair<const void*, int>> identity;
     for (const DraftKey& key : item.keys) identity.emplace_back(key.node, key.owner);
@@ -253,7 +253,7 @@ class ControlLoader {
     }
   }
 
-  // Of states of which one is inside the other, or of a stack and a state over it.
+  // Whether one of the states contains the other, or one is a stack and the other a state over it.
   bool nested(const DraftItem& a, const DraftItem& b) const {
     if (a.owner < 0 || b.owner < 0) return a.owner != b.owner;
     return behavior_.is_descendant(a.owner, b.owner) || behavior_.is_descendant(b.owner, a.owner);
@@ -317,7 +317,7 @@ class ControlLoader {
     }
   }
 
-  // The stack to come, with what the states around say over it.
+  // Compiles the stack in `toward`, overlaid with the keys of the surrounding states.
   void compile_toward(const core::YamlNode& node, const std::vector<int>& active,
                       TransitionSpec& spec) {
     const core::YamlNode* toward = node.find("toward");
@@ -350,7 +350,7 @@ class ControlLoader {
     behavior_.controls.push_back(std::move(control));
   }
 
-  // A foot that is being released, or is still to be loaded, may not hold.
+  // A foot that is being released or loaded must not be among the state's contacts.
   void check_moving(const ControlSpec& control) {
     if (control.transition < 0) return;
     const TransitionSpec& spec =
@@ -369,8 +369,8 @@ class ControlLoader {
 
   LoadContext& context_;
   Behavior& behavior_;
-  std::vector<int> counts_;     // combinations, by state
-  std::vector<bool> controls_;  // by state: it or something below it controls
+  std::vector<int> counts_;     // number of combinations, by state
+  std::vector<bool> controls_;  // by state: it or a descendant defines control
   std::map<std::vector<std::pair<const void*, int>>, std::optional<TaskSpec>> task_cache_;
 };
 

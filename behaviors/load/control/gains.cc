@@ -1,4 +1,4 @@
-// Gain tables: `gains.TABLE.TASK.kp` and so on as slots of the array of values.
+// Gain tables: `gains.TABLE.TASK.kp` etc. as slots of the value array.
 #include "behaviors/load/control/gains.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// The axes of the task that uses an entry first.
+// Axes of the first task that uses an entry.
 struct GainAxes {
   std::vector<std::string> names;  // in the task's order
   bool joints = false;
@@ -32,7 +32,7 @@ void load_ranges(LoadContext& context, const core::YamlNode& ranges) {
   }
 }
 
-// Whether some part of a value is a parameter, an expression or a signal.
+// Whether a value contains a parameter, an expression or a signal.
 bool is_computed(const core::YamlNode& node) {
   if (node.is_sequence()) return std::any_of(node.items.begin(), node.items.end(), is_computed);
   if (node.is_map()) {
@@ -44,7 +44,7 @@ bool is_computed(const core::YamlNode& node) {
   return (first >= 'a' && first <= 'z') && node.scalar.find('.') != std::string::npos;
 }
 
-// One value an axis: a number for all, a list, or a map by axis (joints: with globs).
+// One value an axis: a single number for all, a list, or a map by axis (joints: with patterns).
 std::optional<std::vector<double>> read_values(LoadContext& context, const core::YamlNode& node,
                                                core::Dimension dimension, const GainAxes& use) {
   const std::size_t size = std::max<std::size_t>(use.names.size(), 1);
@@ -128,7 +128,7 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
   }
 }
 
-// A gain that is an expression, axis by axis; checked here where it is constant.
+// Compiles a gain given by expressions, axis by axis; constants are range-checked here.
 void compute_gain(LoadContext& context, const core::YamlNode& node, std::size_t gain,
                   AxesScope axes, std::vector<AxisSpec>& out) {
   axes.dimensions.assign(axes.names.size(), kDimensions[gain]);
@@ -171,7 +171,7 @@ void load_gains(LoadContext& context) {
     for (const core::YamlEntry& task : table.value.entries) {
       const std::string name = fmt::format("gains.{}.{}", table.key, task.key);
       GainEntry& entry = context.gain_entries[name];
-      entry.made = !check_entry(context, task.value);  // then there is nothing to make
+      entry.made = !check_entry(context, task.value);  // on error, no slots are created
       entry.node = &task.value;
       entry.name = name;
     }
@@ -204,7 +204,7 @@ bool require_gain_table(LoadContext& context, const core::YamlNode& name) {
 GainEntry* inline_gains(LoadContext& context, const std::string& owner, const std::string& task,
                         const core::YamlNode& node) {
   std::string name = fmt::format("gains.{}.{}", owner, task);
-  const auto same_place = [&](const core::YamlNode& other) {  // a stack named by several states
+  const auto same_place = [&](const core::YamlNode& other) {  // several states name the same stack
     return other.mark.file == node.mark.file && other.mark.line == node.mark.line &&
            other.mark.column == node.mark.column;
   };

@@ -1,4 +1,4 @@
-// Internal forces of a draft, pair by pair; see tasks.h.
+// Internal forces of the merged control, pair by pair; see tasks.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 using Pair = std::array<int, 2>;
 
-// The pairs that `between` names; `all`: every pair of the contacts in force.
+// The pairs in `between`; `all`: every pair of the active contacts.
 std::vector<Pair> read_between(LoadContext& context, const core::YamlNode& node,
                                const std::vector<int>& contacts) {
   std::vector<Pair> pairs;
@@ -43,7 +43,7 @@ bool same_pair(const InternalSpec& a, const Pair& b) {
          (a.contact_a == b[1] && a.contact_b == b[0]);
 }
 
-// What an internal force says but for its pair; nothing after an error.
+// Compiles an internal force except for its pair; nullopt after an error.
 std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem& item) {
   core::YamlNode map;
   map.kind = core::YamlNode::Kind::map;
@@ -84,7 +84,7 @@ std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& d
   const auto named = [&](const Pair& pair) {
     return std::any_of(out.begin(), out.end(), [&](const auto& s) { return same_pair(s, pair); });
   };
-  for (const bool all : {false, true}) {  // a pair's own word goes before what all pairs get
+  for (const bool all : {false, true}) {  // an entry for one pair overrides the entry for all pairs
     for (const DraftItem& item : draft.internals) {
       if (is_all(item) != all) continue;
       const std::optional<InternalSpec> force = compile_force(context, item);

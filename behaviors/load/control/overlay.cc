@@ -11,7 +11,7 @@
 namespace footfall::behaviors {
 namespace {
 
-// Two states of different regions: neither contains the other.
+// Whether two states are in different regions: neither contains the other.
 bool parallel(const LoadContext& context, int a, int b) {
   return a != b && !context.behavior.is_descendant(a, b) && !context.behavior.is_descendant(b, a);
 }
@@ -29,7 +29,7 @@ bool same_names(const core::YamlNode& a, const core::YamlNode& b) {
                              [](const auto& x, const auto& y) { return x.scalar == y.scalar; });
 }
 
-// Whose word is being laid: a state's, or a stack's (`stack` is not empty) that the state names.
+// Source of an overlay: a state, or a stack (`stack` is not empty) that the state names.
 struct Layer {
   int owner = 0;
   std::string stack;
@@ -41,7 +41,7 @@ std::string layer_name(const LoadContext& context, const Layer& layer) {
                              : layer.stack;
 }
 
-// The keys of one task or internal force over what it has.
+// Overlays the keys of one task or internal force.
 void lay_item(const LoadContext& context, DraftItem& item, const core::YamlNode& map,
               const Layer& layer) {
   item.owner = layer.owner;
@@ -60,7 +60,7 @@ void lay_item(const LoadContext& context, DraftItem& item, const core::YamlNode&
   }
 }
 
-// Lays the entries of a map by name over the items.
+// Overlays the entries of a map by name.
 void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::YamlNode& map,
               const Layer& layer, const char* what) {
   const int owner = layer.owner;
@@ -99,8 +99,8 @@ void lay_over(LoadContext& context, std::vector<DraftItem>& items, const core::Y
   }
 }
 
-// Tables by foot or group; `off` leaves the group's actuators as they are. Items of a stack have no
-// owner: what states say goes over them.
+// Overlays tables by foot or group; `off` leaves the group's actuators unchanged. Items of a stack
+// have no owner: states override them.
 void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& map, int owner) {
   for (const core::YamlEntry& entry : map.entries) {
     auto item = std::find_if(draft.torque_loops.begin(), draft.torque_loops.end(),
@@ -119,14 +119,14 @@ void lay_torque_loops(LoadContext& context, Draft& draft, const core::YamlNode& 
   }
 }
 
-// The tasks that a table of gains, or a state's own, speaks of.
+// The map of gains by task in a table of gains, or in a state's own.
 const core::YamlNode* gains_by_task(const LoadContext& context, const core::YamlNode& gains) {
   if (!gains.is_scalar()) return &gains;
   const core::YamlNode* section = context.section("gains");
   return section == nullptr ? nullptr : section->find(gains.scalar);
 }
 
-// Two regions that both name gains for a task say it twice.
+// Error if two regions both define gains of a task.
 void lay_gains(LoadContext& context, Draft& draft, const core::YamlNode& gains,
                const Layer& layer) {
   const core::YamlNode* mine = gains_by_task(context, gains);
@@ -144,7 +144,7 @@ void lay_gains(LoadContext& context, Draft& draft, const core::YamlNode& gains,
       {&gains, layer.owner, layer.index, false, !layer.stack.empty(), layer_name(context, layer)});
 }
 
-// What a stack and a state have in common.
+// Overlays the keys that stacks and states have in common.
 void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, int owner,
               const std::string& stack) {
   const Layer layer = {owner, stack, draft.layers++};
@@ -170,7 +170,7 @@ void lay_keys(LoadContext& context, Draft& draft, const core::YamlNode& keys, in
   }
 }
 
-// The innermost of the active states that names a stack, -1 if none does.
+// The innermost active state that names a stack, -1 if none does.
 int stack_state(LoadContext& context, const std::vector<int>& active) {
   int best = -1;
   for (const int s : active) {
@@ -232,7 +232,7 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
     if (const core::YamlNode* stack = find_stack(context, name, owner)) {
       lay_keys(context, draft, *stack, owner, name.scalar);
       draft.mark = stack->mark;
-      for (DraftItem& item : draft.tasks) item.owner = 0;  // no state's word yet
+      for (DraftItem& item : draft.tasks) item.owner = 0;  // no state has defined it yet
       for (DraftItem& item : draft.internals) item.owner = 0;
       for (DraftItem& item : draft.torque_loops) item.owner = -1;
       draft.contacts_owner = 0;

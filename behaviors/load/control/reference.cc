@@ -1,4 +1,4 @@
-// The reference of a task: a value an axis, or a trajectory (trajectory.cc).
+// The reference of a task: one value an axis, or a trajectory (trajectory.cc).
 #include <fmt/format.h>
 
 #include "behaviors/load/control/tasks.h"

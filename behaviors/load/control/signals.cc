@@ -1,4 +1,4 @@
-// Task types, and the signals that the tasks of a behavior bring.
+// Task types, and the signals that a behavior's tasks add.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,11 +42,11 @@ const std::vector<TaskTypeInfo>& task_types() {
   return types;
 }
 
-// Adds a task's name and axes; the same name elsewhere adds the axes that are new.
+// Adds a task's name and axes; another task of the same name adds its further axes.
 void add_task(LoadContext& context, const core::YamlEntry& entry) {
   const core::YamlNode* type_node = entry.value.find("type");
   const TaskTypeInfo* type = type_node == nullptr ? nullptr : find_task_type(type_node->scalar);
-  if (type == nullptr) return;  // reported where the task is compiled
+  if (type == nullptr) return;  // reported when the task is compiled
   core::Diagnostics silent;
   const core::YamlNode* axes = entry.value.find(type->joints ? "joints" : "axes");
   const std::vector<std::string> names = all_axes(context, *type);
@@ -108,7 +108,7 @@ core::Dimension TaskTypeInfo::position(int axis) const {
   return core::kNone;
 }
 
-// Momentum is a rate already: what is commanded is its first derivative.
+// Momentum is already a rate: its first derivative is commanded.
 core::Dimension TaskTypeInfo::acceleration(int axis) const {
   const bool momentum = type == TaskType::centroidal_angular_momentum;
   return position(axis) / (momentum ? core::kTime : core::kTime * core::kTime);

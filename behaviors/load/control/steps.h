@@ -1,4 +1,4 @@
-// Steps of the loader that make the control: signals, gains, torque loops, one ControlSpec for each
+// Loader steps that build the control: signals, gains, torque loops, one ControlSpec for each
 // configuration. Load time only.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Tasks of a draft: type, axes, point, gains, limits; see tasks.h.
+// Tasks of the merged control: type, axes, point, gains, limits; see tasks.h.
 #include "behaviors/load/control/tasks.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ int find_instance(LoadContext& context, const DraftItem& item, TaskType type, in
   return static_cast<int>(instances.size()) - 1;
 }
 
-// Where an axis is written: its entry in `axes` or `joints`, if there is one for each.
+// Position of an axis: its item in `axes` or `joints` if they list one for each.
 core::Mark axis_mark(const DraftItem& item, const DraftKey* axes, std::size_t k,
                      std::size_t count) {
   if (axes == nullptr) return item.mark;
@@ -54,7 +54,7 @@ core::Mark axis_mark(const DraftItem& item, const DraftKey* axes, std::size_t k,
   return listed ? axes->node->items[k].mark : axes->node->mark;
 }
 
-// The gains of a task from every layer that names some, outermost first.
+// The gains of a task from every layer that defines some, outermost first.
 std::vector<GainSource> gain_sources(LoadContext& context, const DraftItem& item,
                                      const Draft& draft) {
   std::vector<DraftGains> layers = draft.gains;
@@ -93,7 +93,7 @@ void report_no_gains(LoadContext& context, const DraftItem& item, const Draft& d
                                              item.name, tables));
 }
 
-// kp without kd, and ki without kp, in all layers together.
+// Notes kp without kd, and ki without kp, after merging all layers.
 void note_incomplete_gains(LoadContext& context, const std::vector<GainSource>& sources) {
   const auto node_of = [&](const char* gain) -> const core::YamlNode* {
     for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
@@ -111,7 +111,7 @@ void note_incomplete_gains(LoadContext& context, const std::vector<GainSource>& 
   }
 }
 
-// kp, ki and kd, each from the innermost layer that names it.
+// Compiles kp, ki and kd, each from the innermost layer that defines it.
 void compile_gains(LoadContext& context, const DraftItem& item, const Draft& draft,
                    const TaskTypeInfo& type, const AxesScope& axes, std::vector<AxisSpec>& out) {
   const int before = context.diagnostics.error_count();
@@ -170,7 +170,7 @@ void compile_frame(LoadContext& context, const DraftItem& item, const TaskTypeIn
   }
 }
 
-// A value an axis that must not be negative.
+// A non-negative value for each axis.
 void compile_limits(LoadContext& context, const DraftItem& item, const char* name, AxesScope axes,
                     int AxisSpec::*member, std::vector<AxisSpec>& out) {
   const DraftKey* key = item.find(name);
@@ -188,7 +188,7 @@ void compile_limits(LoadContext& context, const DraftItem& item, const char* nam
   }
 }
 
-// The integral is what ki acts on; of an angular momentum, kp.
+// The integral needs ki; for an angular momentum, kp.
 void warn_idle_limit(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type,
                      const std::vector<AxisSpec>& specs) {
   const DraftKey* limit = item.find("integral_limit");
@@ -203,7 +203,7 @@ void warn_idle_limit(LoadContext& context, const DraftItem& item, const TaskType
 
 void check_task_keys(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type) {
   const std::vector<std::string> known = core::key_names(kTaskKeys, type.name);
-  core::YamlNode map;  // the merged keys, for check_keys
+  core::YamlNode map;  // merged keys, for check_keys
   map.kind = core::YamlNode::Kind::map;
   for (const DraftKey& key : item.keys) {
     if (key.key == "doc") core::check_doc(*key.node, context.diagnostics);

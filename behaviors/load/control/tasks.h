@@ -1,4 +1,4 @@
-// Compiling the tasks, references and internal forces of a draft. Load time only.
+// Compiles tasks, references and internal forces of the merged control. Load time only.
 #pragma once
 
 #include <optional>
@@ -12,22 +12,22 @@
 
 namespace footfall::behaviors {
 
-// A task as compiled; nothing and errors if it cannot be.
+// Compiles a task; nullopt after errors.
 std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item,
                                      const Draft& draft);
-// The reference into `spec` and its axes (reference.cc, trajectory.cc).
+// Compiles the reference into `spec` and its axes (reference.cc, trajectory.cc).
 void compile_reference(LoadContext& context, const DraftItem& item, AxesScope axes, TaskSpec& spec,
                        std::vector<AxisSpec>& out);
 void compile_trajectory(LoadContext& context, const core::YamlNode& map, const AxesScope& axes,
                         TaskSpec& spec, std::vector<AxisSpec>& out);
-// The value of each axis and where it is written.
+// Sets the value and the position of each axis.
 void set_values(const core::YamlNode& node, const std::vector<int>& values,
                 std::vector<AxisSpec>& out);
-// A scalar of a task or internal force that must not be negative; -1 if the key is not there.
+// A non-negative scalar of a task or internal force; -1 if the key is absent.
 int compile_limit(LoadContext& context, const DraftItem& item, const char* name,
                   core::Dimension dimension);
-// An internal force as a pair of contacts each, `between: all` as all pairs of `contacts`; nothing
-// after an error (internal.cc).
+// Compiles an internal force into one spec a pair of contacts, `between: all` into all pairs of
+// `contacts`; nothing after an error (internal.cc).
 std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& draft,
                                             const std::vector<int>& contacts);
 

@@ -1,5 +1,5 @@
-// `torque_loop:` tables: the actuators' own gains by joint. Parsed, checked and stored; a backend
-// with ideal actuators has no use for them.
+// `torque_loop:` tables: gains of the actuators' own torque loops, by joint. Parsed, checked and
+// stored; a backend with ideal actuators does not use them.
 #include <fmt/format.h>
 
 #include <limits>

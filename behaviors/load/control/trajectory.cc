@@ -1,4 +1,4 @@
-// `reference: {trajectory: ...}`: which keys go with which shape, and their values.
+// `reference: {trajectory: ...}`: allowed keys of each shape, and their values.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::size_t kMaxWaypoints = 32;
 
-// A trajectory as written: the nodes of its keys.
+// The YAML nodes of a trajectory's keys.
 struct Words {
   const core::YamlNode& map;
   std::string_view name;
   const core::YamlNode* find(std::string_view key) const { return map.find(key); }
 };
 
-// Why a key has no place in a shape.
+// Why a key is not allowed for a shape.
 std::string_view why_not(std::string_view key, std::string_view shape) {
   if (shape == "hold" && (key == "to" || key == "over" || key == "end_velocity")) {
     return "`hold` stays where it is: no to, no over";
@@ -69,7 +69,7 @@ int compile_owned_time(LoadContext& context, const core::YamlNode& node, int own
   return context.compile_time(node, scope);
 }
 
-// A time that must be above 0 where it is constant.
+// Compiles a positive time; checked if constant.
 int compile_span(LoadContext& context, const core::YamlNode& node, int owner) {
   const int expression = compile_owned_time(context, node, owner);
   const auto value = context.constant_value(expression);
@@ -79,7 +79,7 @@ int compile_span(LoadContext& context, const core::YamlNode& node, int owner) {
   return expression;
 }
 
-// `true`, `false`, or the part of the trajectory's time during which it follows.
+// `true`, `false`, or the fraction of the trajectory's time during which it follows.
 double read_retarget(const core::YamlNode& node, core::Diagnostics& diagnostics) {
   constexpr double kUsual = 0.8;
   if (node.scalar == "true" || node.scalar == "false" || !node.is_scalar()) {
@@ -144,8 +144,8 @@ void compile_ellipse(LoadContext& context, const Words& words, AxesScope axes,
   }
 }
 
-// When a point is passed: `at` (a time in the state or a part of `over`), `over` since the one
-// before, or, for the last, the end of the trajectory's `over`.
+// Passing time of a point: `at` (a time in the state or a fraction of `over`), `over` since the
+// previous point, or, for the last point, the end of the trajectory's `over`.
 void compile_when(LoadContext& context, const Words& words, const core::YamlNode& point, bool last,
                   int owner, WaypointSpec& spec) {
   const core::YamlNode* at = point.find("at");
@@ -178,7 +178,7 @@ void compile_when(LoadContext& context, const Words& words, const core::YamlNode
   }
 }
 
-// Constant times must grow.
+// Constant times must increase.
 void check_growth(LoadContext& context, const core::YamlNode& points,
                   const std::vector<WaypointSpec>& specs) {
   std::optional<double> before = 0.0;
@@ -238,7 +238,7 @@ void compile_waypoints(LoadContext& context, const Words& words, const AxesScope
   }
 }
 
-// A surface is a height of the world.
+// A surface applies only to a height in the world frame.
 void check_surface(LoadContext& context, const Words& words, const AxesScope& axes,
                    const TaskSpec& spec) {
   const bool place = spec.type == tasks::TaskType::com_position ||

@@ -1,5 +1,5 @@
-# cmake -DNPM=... -DWEB=... -DOUT=... -P fetch.cmake: the plotting library into OUT, by `npm ci`. What
-# cannot be had becomes an empty file, with a warning: the report then draws SVG.
+# cmake -DNPM=... -DWEB=... -DOUT=... -P fetch.cmake: installs the plotting library to OUT by `npm
+# ci`. If that fails, the files are empty, with a warning: the report then draws SVG.
 set(files uPlot.iife.min.js uPlot.min.css LICENSE)
 file(MAKE_DIRECTORY ${OUT})
 foreach(file ${files})

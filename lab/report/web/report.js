@@ -1,12 +1,12 @@
-// Fills the report's plots (uPlot, one shared time axis each for the run and its last steps), and marks
-// where the reader is. Without the plotting library the plots are SVG already. What moves the plots by
-// keys, buttons and lists is in report_keys.js, through `report`.
+// Fills the report's plots (uPlot, one shared time axis each for the run and its last steps), and
+// highlights the current section. Without the plotting library the plots are already SVG. Controls
+// (keys, buttons, lists) are in report_keys.js, through `report`.
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const colour = name => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 
-  // Numbers travel as base64 of little-endian floats.
+  // Numbers are encoded as base64 of little-endian floats.
   const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
   const floats = text => Array.from(new Float32Array(bytes(text)), v => (Number.isFinite(v) ? v : null));
 
@@ -15,7 +15,7 @@
     grids[name] = { time: Array.from(new Float64Array(bytes(grid.x))), bands: grid.bands, plots: [], range: null };
   }
 
-  // The states behind the curves; only those in view are drawn.
+  // Draws the state bands behind the curves; only those in view.
   function drawBands(grid) {
     const colours = data.states.map(s => colour(s.colour));
     return u => {
@@ -33,8 +33,8 @@
     };
   }
 
-  // A zoom in one plot is a zoom in all of the same axis. The library tells of a change some time after
-  // it was asked for, so only what is not known yet goes on to the others.
+  // Zooming one plot zooms all plots of the same axis. uPlot reports a change some time after the
+  // request, so only changed ranges are passed on to the others.
   const same = (a, b) => Math.abs(a.min - b.min) < 1e-9 && Math.abs(a.max - b.max) < 1e-9;
   function follow(grid) {
     return (u, key) => {
@@ -51,7 +51,7 @@
     return found ? data.states[found[2]].name : "";
   }
 
-  // What reached the run: a line for each, one a pixel at most.
+  // Event marks: one line each, at most one a pixel.
   const marks = data.marks || [];
   const markColours = { edit: "link", push: "warn", hold: "warn", inject: "warn", fault: "bad" };
   function drawMarks(u) {
@@ -67,7 +67,7 @@
       if (x < left || x > left + width || x - (last[kind] ?? -9) < 4 * ratio) continue;
       last[kind] = x;
       u.ctx.strokeStyle = colour(markColours[kind] || "warn");
-      // Faults may be many: a tick at the top says enough.
+      // Faults may be many: draw only a tick at the top.
       const end = kind === "fault" ? top + 12 * ratio : top + height;
       u.ctx.beginPath();
       u.ctx.moveTo(x, top);
@@ -77,13 +77,13 @@
     u.ctx.restore();
   }
 
-  // All of an axis at once; null: the whole of it.
+  // Sets the range of all plots of an axis; null: the whole run.
   function setRange(grid, range, but) {
     grid.range = range;
     for (const u of grid.plots) if (u !== but) u.setScale("x", range || whole(grid));
   }
   const whole = grid => ({ min: grid.time[0], max: grid.time[grid.time.length - 1] });
-  const runs = {};  // hidden ones, by number
+  const runs = {};  // hidden runs, by number
 
   function options(plot, grid, width) {
     const axis = { stroke: colour("dim"), font: "11.5px system-ui, sans-serif", ticks: { show: false },
@@ -123,7 +123,7 @@
   const places = [...document.querySelectorAll("[data-plot]")];
   for (const place of places) place.tabIndex = 0;
   if (globalThis.uPlot && places.length) {
-    // Drawn when they come near, and again when the width or the colours change.
+    // Plots are drawn when scrolled near, and again when the width or the colours change.
     const near = new IntersectionObserver(entries => {
       for (const entry of entries) {
         if (!entry.isIntersecting) continue;
@@ -141,7 +141,7 @@
       places.filter(place => place.uplot).forEach(draw));
   }
 
-  // The entry of the section that fills the upper part of the window is marked.
+  // Highlights the entry of the section in the upper part of the window.
   const links = new Map([...document.querySelectorAll("nav a")].map(a => [a.getAttribute("href").slice(1), a]));
   const seen = new IntersectionObserver(entries => {
     for (const entry of entries) {
@@ -160,7 +160,7 @@
     marks, setRange, whole,
     grids: () => Object.values(grids).filter(grid => grid.time.length > 1),
     interactive: Boolean(globalThis.uPlot && places.length),
-    // The curves of one run, in every plot.
+    // Shows or hides the curves of one run in every plot.
     showRun(run, show) {
       runs[run] = !show;
       for (const place of places) {

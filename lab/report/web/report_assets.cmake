@@ -1,7 +1,7 @@
 # The report's page, style, script and plotting library as one generated source.
-# footfall_add_report_assets(TARGET): adds it to TARGET's sources.
-# The library comes by `npm ci` from the lock file beside this one, at build time. Without npm, without
-# network, or with FOOTFALL_REPORT_SVG the report draws its plots as SVG instead.
+# footfall_add_report_assets(TARGET) adds it to TARGET's sources. The library is installed by `npm
+# ci` from the lock file beside this one, at build time. Without npm, without network, or with
+# FOOTFALL_REPORT_SVG the report draws its plots as SVG instead.
 option(FOOTFALL_REPORT_SVG "Draw the report's plots as SVG even where npm is there" OFF)
 
 set(FOOTFALL_REPORT_WEB ${CMAKE_CURRENT_LIST_DIR})
@@ -14,7 +14,7 @@ function(footfall_add_report_assets target)
     set(npm "")
     message(STATUS "report: plots as SVG (no npm, or FOOTFALL_REPORT_SVG)")
   endif()
-  # The stamp's name tells the two ways apart, so that a changed option makes it anew.
+  # The stamp's name encodes the configuration, so that a changed option rebuilds it.
   string(MD5 way "${npm}")
   add_custom_command(OUTPUT ${out}/uplot-${way}.stamp
     COMMAND ${CMAKE_COMMAND} "-DNPM=${npm}" -DWEB=${web} -DOUT=${out} -P ${web}/fetch.cmake

@@ -1,11 +1,11 @@
-// Moves the report's plots by keys, by buttons (for phones) and from the lists of edits and events; filters
-// lists, hides runs, walks through steps. After report.js.
+// Controls of the report's plots: keys, buttons (for phones), lists of edits and events, filters,
+// hiding of runs, stepping through steps. Loaded after report.js.
 "use strict";
 (() => {
   const { report } = globalThis;
   const all = selector => [...document.querySelectorAll(selector)];
 
-  // Each axis in its own proportion.
+  // Changes each axis in proportion to its range.
   function change(next) {
     for (const grid of report.grids()) {
       const whole = report.whole(grid), now = grid.range || whole;
@@ -21,7 +21,7 @@
   const zoom = factor => change((middle, span) => ({ middle, span: span * factor }));
   const showWhole = () => report.grids().forEach(grid => report.setRange(grid, null));
 
-  // A moment in the middle of every plot whose axis has it.
+  // Centres every plot whose axis contains it on a moment.
   let here = -Infinity;
   const said = document.getElementById("said");
   function goTo(time, what) {
@@ -56,7 +56,7 @@
     if (target.matches("input, select, textarea") && event.key !== "?") return;
     if (help.open && event.key !== "?") return;
     if (event.key.startsWith("Arrow") && scrollsSideways(target)) return;
-    const u = target.uplot;  // a plot in focus: digits switch its curves
+    const u = target.uplot;  // digits toggle curves of the focused plot
     if (u && digit >= 1 && digit < u.series.length) {
       u.setSeries(digit, { show: !u.series[digit].show });
     } else if (keys[event.key]) {
@@ -70,7 +70,7 @@
   if (!document.querySelector("[data-plot], .moments, #step")) document.querySelector(".tools").hidden = true;
   if (!report.interactive) all("[data-action]").forEach(b => { b.hidden = b.dataset.action !== "help"; });
 
-  // Lists of moments: a click, or arrows and Enter, moves the plots there.
+  // In lists of moments a click, or arrows and Enter, moves the plots to the moment.
   for (const list of all(".moments")) {
     const rows = () => [...list.querySelectorAll("tr[data-t]")].filter(row => !row.hidden);
     let chosen = null;
@@ -111,7 +111,7 @@
     });
   }
 
-  // One step of the portraits alone, with its prediction; 0: all of them.
+  // Shows one step of the portraits with its prediction; 0: all steps.
   const slider = document.getElementById("step");
   if (slider) {
     const facts = JSON.parse(slider.dataset.facts), output = document.getElementById("step-facts");

@@ -1,4 +1,4 @@
-// The command line's short forms as the tree of a sweep file; see loader.h.
+// Converts command-line options to the tree of a sweep file; see loader.h.
 #include <fmt/format.h>
 
 #include "lab/sweep/plan/loader.h"
@@ -16,7 +16,7 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-// An option's text as YAML; its place is the option's name.
+// Reads an option's text as YAML; positions in messages are the option's name.
 class OptionReader {
  public:
   explicit OptionReader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
@@ -25,7 +25,7 @@ class OptionReader {
     return core::load_yaml_text(text, option, diagnostics_);
   }
 
-  // NAME=REST; an empty name after an error.
+  // Splits NAME=REST; an empty name after an error.
   std::pair<std::string, std::string> split(const std::string& text, const char* option) {
     const std::size_t equals = text.find('=');
     if (equals != std::string::npos && equals > 0) {
@@ -36,7 +36,7 @@ class OptionReader {
     return {};
   }
 
-  // `130ms..160ms:4`, `[a, b]`, `{from: ...}`, or one value.
+  // `130ms..160ms:4`, `[a, b]`, `{from: ...}`, or a single value.
   YamlNode values(const std::string& text, const std::string& option) {
     const std::size_t dots = text.find("..");
     const std::size_t colon = text.rfind(':');
@@ -101,7 +101,7 @@ YamlNode sweep_tree(const SweepArguments& a, bool scenario, Diagnostics& diagnos
     return core::Mark{diagnostics.add_file(option), 0, 0};
   };
   yaml_add(root, "sweep", yaml_scalar("1", root.mark));
-  // Relative to the working folder, not to a file.
+  // Relative to the working folder, unlike paths in a file.
   yaml_add(root, scenario ? "scenario" : "behavior", yaml_scalar(a.what, {}));
   const auto text = [&](const char* key, const std::string& value, const char* option) {
     if (!value.empty()) yaml_add(root, key, yaml_scalar(value, mark_of(option)));

@@ -1,4 +1,4 @@
-// Lists, grids and draws as values of axes; see axes.h.
+// Lists, grids and random samples as axis values; see axes.h.
 #include "lab/sweep/plan/axes.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace {
 using core::Diagnostics;
 using core::YamlNode;
 
-// A number and the unit behind it, as written: {150, "ms"}.
+// A number and its unit as written: {150, "ms"}.
 struct Written {
   double number = 0.0;
   std::string unit;
@@ -33,7 +33,7 @@ std::optional<Written> written(const std::string& text) {
   return Written{number, std::move(unit)};
 }
 
-// Two quantities of one dimension in one unit: the one both are written with, else SI.
+// The two ends of a range, of one dimension, in the unit that both are written with, else SI.
 struct Ends {
   double a = 0.0, b = 0.0;
   std::string unit;
@@ -68,13 +68,13 @@ std::optional<Ends> read_pair_of(const YamlNode& node, Diagnostics& diagnostics)
   return read_ends(node.items[0], node.items[1], diagnostics);
 }
 
-// Computed: nine digits are far below what a robot feels, and hide the last bits of the arithmetic.
+// A computed value, rounded to nine digits: far finer than any robot, and hides rounding errors.
 SweepValue computed_value(double number, const std::string& unit, core::Mark mark) {
   const std::string digits = fmt::format("{:.9g}", number);
   return {unit.empty() ? digits : digits + " " + unit, std::stod(digits), mark};
 }
 
-// The unit that all values share; their numbers are of one kind only then.
+// Sets the unit shared by all values, so that their numbers are comparable.
 void settle_units(SweepAxis& axis) {
   bool first = true;
   for (const SweepValue& value : axis.values) {
@@ -83,7 +83,7 @@ void settle_units(SweepAxis& axis) {
     if (first) axis.unit = w->unit;
     first = false;
     if (w->unit == axis.unit) continue;
-    axis.unit.clear();  // 150 ms beside 0.2 s: SI
+    axis.unit.clear();  // different units, such as 150 ms and 0.2 s: SI
     for (SweepValue& other : axis.values) {
       if (const auto q = core::parse_quantity(other.text)) {
         other.number = q->value;

@@ -1,4 +1,4 @@
-// The parts of a sweep file that give values: `vary`, `zip`, `sample`. See loader.h.
+// The parts of a sweep file that define values: `vary`, `zip`, `sample`. See loader.h.
 #pragma once
 
 #include "core/yaml/yaml.h"

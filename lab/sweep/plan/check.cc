@@ -1,4 +1,4 @@
-// Loads what some of the runs would load; see check.h.
+// Checks a sweep by loading samples of what its runs would load; see check.h.
 #include "lab/sweep/plan/check.h"
 
 #include <fmt/format.h>
@@ -18,9 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 using core::Diagnostics;
 
-constexpr std::size_t kMostTries = 200;  // loads of the behavior: about 10 ms each
+constexpr std::size_t kMostTries = 200;  // loads of the behavior, about 10 ms each
 
-// A folder that is gone at the end.
+// A temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -57,7 +57,7 @@ void list_files(const Diagnostics& from, std::vector<std::string>& files) {
   }
 }
 
-// Behavior or scenario as they are; takes what the sweep leaves to them.
+// Checks the behavior or scenario itself, and takes the settings that the sweep leaves to it.
 void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagnostics& diagnostics,
                 std::vector<std::string>& files) {
   Diagnostics found;
@@ -90,7 +90,7 @@ void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagn
   }
 }
 
-// The values of an axis that are tried.
+// Indices of the axis values that are tried.
 std::vector<std::size_t> candidates(const SweepAxis& axis) {
   std::vector<std::size_t> list;
   if (axis.spelled) {
@@ -103,7 +103,7 @@ std::vector<std::size_t> candidates(const SweepAxis& axis) {
           static_cast<std::size_t>(high - axis.values.begin())};
 }
 
-// Puts what a try found to the value that caused it.
+// Reports problems found by a trial load at the sweep value that caused them.
 class Blame {
  public:
   Blame(const SweepDescription& sweep, const SweepRun& run, const SweepTarget& target,
@@ -132,7 +132,7 @@ class Blame {
   }
 
  private:
-  // An error in a derived file, or where a value is used.
+  // Reports an error in a derived file, or at the place where a value is used.
   void elsewhere(const core::Diagnostic& item, const std::string& file, const std::string& text) {
     const bool world = file == target_.world, script = file == target_.path;
     std::optional<core::Mark> place;
@@ -192,7 +192,7 @@ void try_run(const SweepDescription& sweep, const SweepRun& run, SweepFiles& fil
   blame.take(world);
 }
 
-// Every candidate of every axis in some row, each row a run with one of each.
+// Tries rows, each a run with one candidate per axis, so that every candidate occurs in some row.
 void try_values(const SweepDescription& sweep, const SweepCheckOptions& options,
                 Diagnostics& diagnostics) {
   std::vector<std::vector<std::size_t>> tried;

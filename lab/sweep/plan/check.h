@@ -1,4 +1,4 @@
-// Whether every name and value of a sweep means something to what it runs: before the first run.
+// Checks before the first run that every name and value of a sweep is valid.
 #pragma once
 
 #include <functional>
@@ -10,16 +10,17 @@
 namespace footfall::lab {
 
 struct SweepCheckOptions {
-  std::vector<std::string> search;  // folders holding robots/ and behaviors/library/
+  std::vector<std::string> search;  // folders with robots/ and behaviors/library/
   std::vector<std::string> worlds;  // path of each of the sweep's worlds
-  // Loads a world and reports what is wrong; from whoever knows worlds.
+  // Loads a world and reports its errors; supplied by the caller, because the loader is in sim.
   std::function<void(const std::string& path, core::Diagnostics&)> check_world;
 };
 
-// Problems go to diagnostics, at the value that causes them. Of values written one by one each is
-// tried, of grids and draws the least and the greatest, each beside some value of the others: not
-// every combination. Fills what the sweep leaves to its scenario (seeds, duration). Returns the
-// files that decide what runs, for their content's digest; none after errors.
+// Reports problems at the sweep value that causes them. Individually listed values are all tried,
+// of grids and samples the smallest and the largest, each together with some value of the other
+// axes: not every combination. Fills settings that the sweep leaves to its scenario (seeds,
+// duration). Returns the files that determine the runs, for a digest of their content; empty after
+// errors.
 std::vector<std::string> check_sweep(SweepDescription& sweep, const SweepCheckOptions& options,
                                      core::Diagnostics& diagnostics);
 

@@ -22,11 +22,11 @@ using core::YamlNode;
 constexpr std::string_view kScript = "script.", kWorld = "world.";
 
 YamlNode parsed(const std::string& text) {
-  core::Diagnostics ignored;  // it was read from a file, or written by us
+  core::Diagnostics ignored;  // the file was loaded before, or written by us
   return core::load_yaml_text(text, "", ignored);
 }
 
-// The value that the parts after the first lead to; maps on the way are made.
+// Sets the value at the path `parts` (without its first element); creates missing maps.
 void put_at(YamlNode& root, const std::vector<std::string>& parts, const std::string& text) {
   YamlNode* node = &root;
   for (std::size_t k = 1; k + 1 < parts.size(); ++k) {
@@ -120,7 +120,7 @@ std::string SweepFiles::derived_scenario(const SweepRun& run, const SweepTarget&
   } else {
     yaml_put(root, "base", yaml_scalar(absolute(sweep_.scenario)));
     if (!sweep_.duration.empty()) yaml_put(root, "for", yaml_scalar(sweep_.duration));
-    // Other parameters than those that it was recorded with.
+    // The golden trace was recorded with other parameters.
     if (scenario_.find("golden") != nullptr) yaml_put(root, "golden", yaml_scalar("off"));
     if (const YamlNode* base = scenario_.find("script")) script = base->items;
   }

@@ -1,5 +1,5 @@
-// What the runs of a sweep are told to run: the behavior or scenario itself, or a scenario or world
-// derived from it (with `base:`) where the sweep changes what no option of `footfall run` changes.
+// The files that the runs of a sweep use: the behavior or scenario itself, or a derived scenario or
+// world (with `base:`) for changes that no option of `footfall run` can make.
 #pragma once
 
 #include <set>
@@ -13,20 +13,20 @@
 namespace footfall::lab {
 
 struct SweepTarget {
-  std::string path;       // of the behavior or scenario
-  bool scenario = false;  // which of them
-  std::string world;      // path; empty: its own. Said by the scenario if it is one
-  std::vector<std::pair<std::string, std::string>> set;  // what remains for --set
+  std::string path;       // path of the behavior or scenario
+  bool scenario = false;  // true for a scenario
+  std::string world;      // path; empty: the default. For a scenario, set in its file
+  std::vector<std::pair<std::string, std::string>> set;  // for --set
 };
 
 class SweepFiles {
  public:
-  // Derived files go to `folder`, which is made when the first is written. worlds: the path of each
+  // Derived files are written to `folder`, which is created when needed. worlds: the path of each
   // of the sweep's worlds. Throws std::runtime_error if the scenario cannot be read.
   SweepFiles(const SweepDescription& sweep, std::string folder, std::vector<std::string> worlds);
 
-  // Writes what is missing. Throws std::runtime_error, `script.3.push.force: ...` if the scenario
-  // has no such place.
+  // Writes missing files. Throws std::runtime_error, `script.3.push.force: ...` if the scenario has
+  // no such entry.
   SweepTarget target(const SweepRun& run);
 
  private:
@@ -37,16 +37,16 @@ class SweepFiles {
   const SweepDescription& sweep_;
   std::string folder_;
   std::vector<std::string> worlds_;
-  core::YamlNode scenario_;  // with its bases
+  core::YamlNode scenario_;  // merged with its bases
   std::set<std::string> written_;
   bool any_fault_ = false, any_script_ = false;
 };
 
-// Of which kind the name of an axis is.
+// Whether an axis name refers to the scenario's script.
 bool is_script_axis(const std::string& name);
 bool is_world_axis(const std::string& name);
 
-// The whole command of a run.
+// The complete command line of a run.
 std::vector<std::string> command_of(const std::string& program, const SweepDescription& sweep,
                                     const SweepRun& run, const SweepTarget& target);
 

@@ -1,5 +1,5 @@
-// A `sweep: 1` file as data: every map with its keys, every list of words. The loader reads its
-// names from here, the JSON Schema and docs/reference.md are printed from here.
+// The format of a `sweep: 1` file as data: every map with its keys, every list of words. Used by
+// the loader, the JSON Schema and docs/reference.md.
 #pragma once
 
 #include "core/yaml/key_table.h"
@@ -11,7 +11,7 @@ extern const core::KeyTable kSweepGridKeys;
 extern const core::KeyTable kSweepSampleKeys;
 extern const core::KeyTable kSweepDistributionKeys;
 extern const core::KeyTable kSweepFaultKeys;
-extern const std::span<const core::WordSpec> kSweepFaults;   // `none` and those of scenarios
+extern const std::span<const core::WordSpec> kSweepFaults;   // `none` and the faults of scenarios
 extern const std::span<const core::WordSpec> kSweepMethods;  // in the order of SampleMethod
 
 extern const core::FileTable kSweepFile;

@@ -1,4 +1,4 @@
-// The head of a sweep file: what runs, where, how often; see loader.h.
+// The main part of a sweep file: what runs, in which worlds, with which seeds; see loader.h.
 #include "lab/sweep/plan/loader.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ struct SweepReader {
   Diagnostics& diagnostics;
 };
 
-// A file beside the one that names it, in the working folder, or in the library.
+// Finds a file beside the one that names it, in the working folder, or in the library.
 std::string find_file(const SweepReader& reader, const YamlNode& node, const std::string& name,
                       const char* library) {
   std::vector<std::string> candidates;
@@ -72,7 +72,7 @@ void read_what(SweepReader& reader, const YamlNode& root) {
                              "one of the keys 'behavior', 'scenario' is missing");
   } else if (behavior != nullptr && scenario != nullptr) {
     reader.diagnostics.error(scenario->mark, "misplaced-key",
-                             "'scenario' beside 'behavior': one of them is meant");
+                             "'scenario' beside 'behavior': only one is allowed");
   }
   read_target(reader, root, "behavior", reader.sweep.behavior);
   read_target(reader, root, "scenario", reader.sweep.scenario);
@@ -106,7 +106,7 @@ void read_worlds(SweepReader& reader, const YamlNode& root) {
   }
 }
 
-// A time as written, if it is one; `what` of the run it is.
+// A duration as written, after checking it; `what` is its name in messages.
 std::string time_text(SweepReader& reader, const YamlNode& node, bool positive) {
   const auto time =
       core::read_bounded(node, core::kTime, 0.0, kLongest, reader.diagnostics, "a time");

@@ -17,7 +17,7 @@ std::size_t world_count(const SweepDescription& sweep) {
 }  // namespace
 
 std::size_t run_count(const SweepDescription& sweep) {
-  // Saturates: a product that is too large stays so.
+  // Saturates at the maximum instead of overflowing.
   std::size_t count = 1;
   const auto times = [&count](std::size_t factor) {
     count = factor != 0 && count > kMostSweepRuns / factor ? kMostSweepRuns + 1 : count * factor;
@@ -90,7 +90,8 @@ std::string plan_digest(const SweepDescription& sweep) {
                          {"faults", nlohmann::json::array()},
                          {"axes", nlohmann::json::array()},
                          {"groups", nlohmann::json::array()}};
-  // A figure or a text for people may change; where the files lie may, too: their content counts.
+  // Figures of merit and texts may change without changing the plan; so may paths, because the
+  // contents of files are digested instead.
   plan["kind"] = sweep.scenario.empty() ? "behavior" : "scenario";
   for (const SweepFault& f : sweep.faults) {
     plan["faults"].push_back({f.label, f.fault, f.at, f.duration});

@@ -1,4 +1,4 @@
-// Draws by inverse distribution functions; see sample.h.
+// Samples by inverse distribution functions; see sample.h.
 #include "lab/sweep/plan/sample.h"
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 namespace footfall::lab {
 namespace {
 
-// The library's distributions differ from one library to another; its generator does not.
+// Not std::uniform_real_distribution: its results differ between standard libraries, those of the
+// generator do not.
 double unit(std::mt19937_64& generator) {
   return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
 }
@@ -22,7 +23,7 @@ std::uint64_t stream_of(const std::string& name, std::uint64_t seed) {
 
 double normal_part_below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-// By bisection: 9 standard deviations leave 1e-19 outside.
+// By bisection; the probability beyond 9 standard deviations is 1e-19.
 double normal_quantile(double u) {
   double low = -9.0, high = 9.0;
   for (int k = 0; k < 80; ++k) {

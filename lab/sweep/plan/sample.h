@@ -1,4 +1,4 @@
-// Values drawn at random for a sweep, the same on every machine and in every session.
+// Random samples for a sweep, identical on every machine and in every session.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@ enum class SampleMethod : std::uint8_t { random, latin_hypercube };
 
 struct DistributionSpec {
   Distribution kind = Distribution::uniform;
-  double a = 0.0, b = 1.0;  // ends; of `normal` mean and standard deviation
-  double low = -std::numeric_limits<double>::infinity();  // `normal` is cut off here
+  double a = 0.0, b = 1.0;  // interval; for `normal` mean and standard deviation
+  double low = -std::numeric_limits<double>::infinity();  // bounds of a truncated `normal`
   double high = std::numeric_limits<double>::infinity();
 };
 
-// `count` draws in (0, 1) for the parameter `name`: a stream of its own, so that other parameters
-// and (with `random`) a larger count change nothing.
+// `count` samples in (0, 1) for the parameter `name`. Each parameter has its own stream, so that
+// further parameters and (with `random`) a larger count do not change the others.
 std::vector<double> unit_draws(const std::string& name, std::uint64_t seed, std::size_t count,
                                SampleMethod method);
-// The value below which the part u (0..1) of the distribution lies.
+// Quantile: the value below which a fraction u (0..1) of the distribution lies.
 double quantile(const DistributionSpec& distribution, double u);
 
 }  // namespace footfall::lab

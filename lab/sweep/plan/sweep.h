@@ -1,6 +1,6 @@
-// A sweep: one behavior or scenario, run with many values of its parameters, in worlds, with faults
-// and seeds. Here is what it says (SweepDescription) and which runs follow from that: they are
-// numbered, and a number is enough to know a run.
+// A sweep: one behavior or scenario, run with many values of its parameters, in several worlds,
+// with faults and seeds. Its description (SweepDescription) and the runs that follow from it: a run
+// is identified by its number.
 #pragma once
 
 #include <cstddef>
@@ -14,39 +14,39 @@
 
 namespace footfall::lab {
 
-// One value of a parameter, as `--set` takes it.
+// One value of a parameter, in the notation of `--set`.
 struct SweepValue {
   std::string text;              // `150 ms`, `[220, 237, 400]`
-  std::optional<double> number;  // of `text`, in the unit written there; none for a list
+  std::optional<double> number;  // number in `text`, in its unit; nullopt for a list
   core::Mark mark;
 };
 
-// A value of the behavior, the scenario or the world that differs from run to run.
+// A value of the behavior, the scenario or the world that is varied.
 struct SweepAxis {
   std::string name;  // `lift_time`, `gains.single.swing.kp`, `script.1.push.force`, `world.KEY`
   core::Mark mark;
   std::vector<SweepValue> values;
-  std::string unit;      // that all values are written with, as text; may be empty
-  bool spelled = false;  // each value was written by hand: each is checked
+  std::string unit;      // common unit of all values, as text; may be empty
+  bool spelled = false;  // values are listed individually: check each of them
 };
 
-// Axes that advance together: one of `vary`, all of `zip`, all of `sample`.
+// Axes that vary together: one of `vary`, all of `zip`, all of `sample`.
 struct SweepGroup {
   std::vector<std::size_t> axes;
-  std::size_t size = 0;  // values of each of its axes
+  std::size_t size = 0;  // number of values of each of its axes
 };
 
-// What fails; `none` is empty.
+// An injected fault; the default is `none`.
 struct SweepFault {
   std::string label = "none";  // unique in the sweep: `mocap.dropout`, `mocap.dropout@5 s`
-  std::string fault;           // the scenario's word, empty: nothing
+  std::string fault;           // the scenario's keyword; empty: none
   std::string at = "2 s";
-  std::string duration;  // empty: to the end
+  std::string duration;  // empty: to the end of the run
 };
 
 struct SweepDescription {
   std::string path, name, doc;
-  std::string behavior, scenario;   // paths; one of them
+  std::string behavior, scenario;   // paths; exactly one is set
   std::string robot;                // empty: the behavior's
   std::vector<std::string> worlds;  // names or paths; empty: the scenario's, or flat
   std::vector<core::Mark> world_marks;
@@ -54,7 +54,7 @@ struct SweepDescription {
   std::vector<std::uint64_t> seeds;
   std::string duration;      // as written; empty: the scenario's
   double duration_s = 20.0;  // s
-  double timeout = 0.0;      // s of wall time; 0: from the duration
+  double timeout = 0.0;      // s of wall time; 0: derived from the duration
   std::vector<SweepAxis> axes;
   std::vector<SweepGroup> groups;
   std::vector<std::string> figures;
@@ -65,24 +65,25 @@ struct SweepRun {
   std::size_t id = 0;  // from 0
   std::size_t world = 0, fault = 0;
   std::uint64_t seed = 0;
-  std::vector<std::size_t> values;  // of each axis: index into its values
+  std::vector<std::size_t> values;  // for each axis: index into its values
 };
 
 inline constexpr std::size_t kMostSweepRuns = 1'000'000;
 
 std::size_t run_count(const SweepDescription& sweep);
-// Worlds vary slowest, then faults, the groups in their order, seeds fastest.
+// The run with a number. Worlds vary slowest, then faults, the groups in order, seeds fastest.
 SweepRun run_of(const SweepDescription& sweep, std::size_t id);
 std::string world_of(const SweepDescription& sweep, const SweepRun& run);
-// Name and text of every axis, in their order.
+// Name and value text of every axis, in order.
 std::vector<std::pair<std::string, std::string>> settings_of(const SweepDescription& sweep,
                                                              const SweepRun& run);
-// The same for the same run of any sweep of the same behavior: a JSON object in one line.
+// Identifies a run across sweeps of the same behavior: equal settings give equal keys. A JSON
+// object in one line.
 std::string key_of(const SweepDescription& sweep, const SweepRun& run);
 
-// FNV-1a, 64 bits, as 16 hexadecimal digits: tells texts apart, no more.
+// FNV-1a, 64 bits, as 16 hexadecimal digits; not cryptographic.
 std::string digest(const std::string& text);
-// Of everything that decides which runs there are, and what is run for how long.
+// Digest of everything that determines the set of runs, their content and duration.
 std::string plan_digest(const SweepDescription& sweep);
 
 }  // namespace footfall::lab

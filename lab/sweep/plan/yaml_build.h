@@ -1,4 +1,4 @@
-// Trees of YAML that no file says: for writing files, and for what options of the command line say.
+// Builds YAML trees in memory, for writing files and for command-line options.
 #pragma once
 
 #include <string>
@@ -23,13 +23,13 @@ inline core::YamlNode yaml_map(core::Mark mark = {}) {
   return node;
 }
 
-// A further entry, even beside one of the same key: readers report that.
+// Adds an entry, even if the key exists: readers report the duplicate.
 inline void yaml_add(core::YamlNode& map, const std::string& key, core::YamlNode value) {
   const core::Mark mark = value.mark;
   map.entries.push_back({key, mark, false, std::move(value)});
 }
 
-// The only entry of that key; returns its value.
+// Sets the only entry with that key; returns its value.
 inline core::YamlNode& yaml_put(core::YamlNode& map, const std::string& key, core::YamlNode value) {
   for (core::YamlEntry& entry : map.entries) {
     if (entry.key == key) return entry.value = std::move(value);

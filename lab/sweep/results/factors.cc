@@ -1,4 +1,4 @@
-// See factors.h.
+// Factors of a sweep; see factors.h.
 #include "lab/sweep/results/factors.h"
 
 #include <fmt/format.h>
@@ -15,11 +15,10 @@ namespace {
 
 using JsonValue = nlohmann::json;
 
-constexpr std::size_t kMostLevels = 24;  // more are put into bins
+constexpr std::size_t kMostLevels = 24;  // more levels are grouped into bins
 constexpr std::size_t kBins = 8;
 
-// The number in a value as written, in the axis' unit: the text's own number where it has that
-// unit, else SI.
+// The number in a value as written, in the unit of the axis; in SI if the text has another unit.
 double number_in(const std::string& text, const std::string& unit) {
   const auto quantity = core::parse_quantity(text);
   if (!quantity) return std::numeric_limits<double>::quiet_NaN();
@@ -37,7 +36,7 @@ int index_in(std::vector<std::string>& levels, const std::string& text) {
   return index;
 }
 
-// Bins that hold about as many runs each.
+// Groups the values into bins with about equal numbers of runs.
 void put_in_bins(SweepFactor& factor) {
   std::vector<double> sorted = factor.number;
   std::ranges::sort(sorted);
@@ -57,7 +56,7 @@ void put_in_bins(SweepFactor& factor) {
   }
 }
 
-// By their numbers: draws and lists come in any order.
+// Sorts levels by their numbers: samples and lists are unordered.
 void sort_levels(SweepFactor& factor) {
   std::vector<std::pair<double, int>> order;
   for (std::size_t k = 0; k < factor.levels.size(); ++k) {

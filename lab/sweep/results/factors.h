@@ -1,4 +1,4 @@
-// What differs from run to run, as the report and its tables use it: levels that can be counted.
+// The factors of a sweep for its report and tables: what differs between runs, as countable levels.
 #pragma once
 
 #include <string>
@@ -9,19 +9,19 @@
 
 namespace footfall::lab {
 
-// A parameter, the world, the fault, or the seed's absence: one of a few levels for each run.
+// A parameter, the world, or the fault; each run has one of its levels.
 struct SweepFactor {
-  std::string name, unit;           // unit of numbers; may be empty
-  bool parameter = false;           // an axis, not world or fault
+  std::string name, unit;           // unit of `number`; may be empty
+  bool parameter = false;           // an axis, not the world or the fault
   bool binned = false;              // levels are ranges of many values
-  std::vector<std::string> levels;  // in the order of the plan, or of size
-  std::vector<int> level;           // of each row of the table; -1: none
-  std::vector<double> number;       // of each row, in `unit`; index of the level for what is none
+  std::vector<std::string> levels;  // in plan order, or by size
+  std::vector<int> level;           // level of each row of the table; -1: none
+  std::vector<double> number;       // of each row, in `unit`; index of the level if not numeric
 };
 
-// Those with two levels at least.
+// All factors with at least two levels.
 std::vector<SweepFactor> sweep_factors(const SweepTable& table);
-// Runs that passed, of those that passed or failed and fulfil `keep` (by row).
+// Number of passed runs, among those that passed or failed and satisfy `keep` (by row).
 template <typename Keep>
 Share share_of(const SweepTable& table, Keep keep) {
   Share share;
@@ -33,9 +33,9 @@ Share share_of(const SweepTable& table, Keep keep) {
   }
   return share;
 }
-// The figures of merit: those that the sweep names, else a few that runs have.
+// The figures of merit: those that the sweep names, else a default selection.
 std::vector<std::string> figures_of_merit(const SweepTable& table);
-// SI, by the name; may be empty.
+// SI unit, derived from the name; may be empty.
 std::string figure_unit(const std::string& name);
 
 }  // namespace footfall::lab

@@ -1,4 +1,4 @@
-// The page, its summary, its worst runs; see report.h.
+// The page of a sweep's report, its summary and its worst runs; see report.h.
 #include "lab/sweep/results/report.h"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ std::size_t count_of(const SweepTable& table, SweepStatus status) {
       table.rows, [status](const SweepRow& row) { return row.result.status == status; }));
 }
 
-// How bad a run was: a fall, the earlier the worse; else the first figure of merit.
+// Ranks runs: falls first, earlier ones worse; then by the first figure of merit.
 double badness(const SweepRow& row, const std::string& figure) {
   const auto value = [&row](const std::string& name, double otherwise) {
     const auto at = row.figures.find(name);
@@ -51,7 +51,8 @@ std::string settings_text(const SweepRow& row) {
   return text;
 }
 
-// Runs that differ in nothing but their seed are the same: their number proves nothing.
+// Whether runs that differ only in their seed have equal results; then their number is not
+// evidence.
 bool seeds_change_nothing(const SweepTable& table) {
   const std::vector<std::string> figures = figures_of_merit(table);
   const auto result = [&figures](const SweepRow& row) {
@@ -116,7 +117,7 @@ Section sweep_summary_section(const SweepTable& table) {
   for (const SweepRow& row : table.rows) cpu += row.result.cpu_time;
   section.html = "<div class=\"cards\">";
   section.html += sweep_card("runs", fmt::format("{} of {}", done, table.identity.runs),
-                             done < table.identity.runs ? "the same command goes on" : "all done");
+                             done < table.identity.runs ? "repeat the command to continue" : "all done");
   section.html +=
       sweep_card("passed", share.of == 0 ? "–" : fmt::format("{:.1f} %", 100 * share.value()),
                  fmt::format("{} of {}; 95 % interval {:.1f} to {:.1f} %", share.good, share.of,

@@ -1,4 +1,4 @@
-// The report of a sweep: one HTML page that needs no network.
+// The report of a sweep: one HTML page that works offline.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace footfall::lab {
 
 std::string sweep_report_html(const SweepTable& table);
 
-// Its parts, in their order; without content where there is nothing to say.
+// The sections of the page in order; empty if the table has no data for them.
 Section sweep_summary_section(const SweepTable& table);
 Section sweep_share_section(const SweepTable& table, const std::vector<SweepFactor>& factors);
 Section sweep_map_section(const SweepTable& table, const std::vector<SweepFactor>& factors);

@@ -1,4 +1,4 @@
-// Shares, success maps and sensitivities of a sweep's report; see report.h.
+// Success rates, success maps and sensitivities of a sweep's report; see report.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::string interval_text(const Share& share) {
 
 bool comparable(const SweepRow& row) { return row.result.status == SweepStatus::passed; }
 
-// Of the runs that passed and have this level.
+// Median over the passed runs with this level.
 double median_figure(const SweepTable& table, const SweepFactor& factor, int level,
                      const std::string& figure) {
   std::vector<double> values;
@@ -54,7 +54,7 @@ std::string map_cell(const Share& share, const std::string& where) {
                      100.0 * share.value(), escape_html(text), percent(share.value()), share.of);
 }
 
-// x to the right, y downwards in the order of the plan.
+// x to the right, y downwards in plan order.
 std::string map_html(const SweepTable& table, const SweepFactor& x, const SweepFactor& y) {
   std::string out = fmt::format(
       "<figure><figcaption>{} (rows) against {} (columns)</figcaption>"
@@ -75,7 +75,7 @@ std::string map_html(const SweepTable& table, const SweepFactor& x, const SweepF
   return out + "</table></div></figure>";
 }
 
-// A figure against a parameter, of the runs that passed.
+// A figure of merit against a parameter, for passed runs.
 struct Samples {
   std::vector<double> x, y;
   std::vector<int> level;
@@ -109,7 +109,7 @@ PlanePlot sensitivity_plot(const SweepFactor& factor, const std::string& figure,
       median{"median", "c0", Mark::line, {}, 1.0};
   PlaneCurve high = low;
   high.label.clear();
-  std::vector<std::pair<double, int>> places;  // where each level lies
+  std::vector<std::pair<double, int>> places;  // position and level
   for (std::size_t i = 0; i < factor.levels.size(); ++i) {
     std::vector<double> x;
     for (std::size_t k = 0; k < samples.x.size(); ++k) {
@@ -136,8 +136,8 @@ PlanePlot sensitivity_plot(const SweepFactor& factor, const std::string& figure,
 Section sweep_share_section(const SweepTable& table, const std::vector<SweepFactor>& factors) {
   Section section{"shares",
                   "Success by value",
-                  "The part of runs that passed with each value, over all values of the others; "
-                  "the bar is the 95 % interval. Medians are of runs that passed.",
+                  "Fraction of passed runs for each value, over all values of the others; "
+                  "the bar is the 95 % interval. Medians are over passed runs.",
                   "",
                   {},
                   {}};
@@ -173,8 +173,8 @@ Section sweep_share_section(const SweepTable& table, const std::vector<SweepFact
 Section sweep_map_section(const SweepTable& table, const std::vector<SweepFactor>& factors) {
   Section section{"maps",
                   "Success maps",
-                  "The part of runs that passed with both values, over all else; n is how many "
-                  "runs that is of. Point at a cell for its interval.",
+                  "Fraction of passed runs for both values, over all else; n is the number of "
+                  "runs. Point at a cell for its interval.",
                   "",
                   {},
                   {}};
@@ -198,8 +198,8 @@ Section sweep_sensitivity_section(const SweepTable& table,
                                   const std::vector<SweepFactor>& factors) {
   Section section{"sensitivity",
                   "Sensitivity",
-                  "Figures of merit against each parameter, over all else, of runs that passed. "
-                  "Rank correlation (Spearman): 1 rises always, -1 falls always, 0 neither.",
+                  "Figures of merit against each parameter, over all else, for passed runs. "
+                  "Rank correlation (Spearman): 1 always increasing, -1 always decreasing.",
                   "",
                   {},
                   {}};

@@ -22,7 +22,7 @@ using JsonValue = nlohmann::json;
 constexpr double kSweepTimeout = 60.0, kSweepTimeoutPerSecond = 3.0;
 constexpr std::size_t kTail = 2000;  // bytes of stderr kept
 
-// Every number in the object, by its path with dots between.
+// Collects every number in the object by its dotted path.
 void flatten(const JsonValue& json, const std::string& name, SweepResult& result) {
   const auto put = [&](double value) {
     if (std::isfinite(value)) result.figures.emplace_back(name, value);
@@ -36,7 +36,7 @@ void flatten(const JsonValue& json, const std::string& name, SweepResult& result
   }
 }
 
-// The object that ends the output.
+// The JSON object at the end of the output.
 JsonValue result_object(const std::string& out) {
   const std::size_t last = out.find_last_not_of(" \n\r\t");
   if (last == std::string::npos) return {};
@@ -50,7 +50,7 @@ std::string string_at(const JsonValue& json, const char* key) {
   return at != json.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
-// Why a scenario did not pass: its own words, else the first expectation that did not hold.
+// Why a scenario did not pass: its reported reason, else the first failed expectation.
 std::string reason(const JsonValue& outcome) {
   std::string why = string_at(outcome, "why");
   const auto list = outcome.find("expectations");
@@ -132,11 +132,11 @@ class SweepSession {
   }
 
   void done(std::size_t id, const ProcessResult& process) {
-    if (process.end == ProcessEnd::not_started) {  // nor will the others
+    if (process.end == ProcessEnd::not_started) {  // the others could not be started either
       throw std::runtime_error("'" + settings_.program + "' " + describe(process));
     }
     const SweepResult result = read_sweep_result(process);
-    // Stopped: another time. A batch system's signal reaches parent and child at once.
+    // Interrupted runs stay pending: a batch system's signal reaches parent and child at once.
     const bool stopping = settings_.stop != nullptr && settings_.stop->load();
     if (result.status == SweepStatus::pending || (stopping && result.end == "stopped")) return;
     store_.record(id, shell_line(command_for("footfall", id)), result);

@@ -1,4 +1,4 @@
-// A prepared statement of SQLite that frees itself and throws what the library reports. Private to
+// RAII wrappers of SQLite statements and transactions that throw on errors. Private to
 // lab/sweep/results/store*.cc.
 #pragma once
 
@@ -26,7 +26,7 @@ class SqliteStatement {
   SqliteStatement(const SqliteStatement&) = delete;
   SqliteStatement& operator=(const SqliteStatement&) = delete;
 
-  // Values of the `?` in their order; then step() or run().
+  // Binds the next `?`; after the last one call step() or run().
   SqliteStatement& bind(std::string_view text) {
     sqlite3_bind_text(statement_, ++bound_, text.data(), static_cast<int>(text.size()),
                       SQLITE_TRANSIENT);
@@ -45,14 +45,14 @@ class SqliteStatement {
     return *this;
   }
 
-  // True while there is a row.
+  // Advances to the next row; false after the last one.
   bool step() {
     const int code = sqlite3_step(statement_);
     if (code == SQLITE_ROW) return true;
     if (code != SQLITE_DONE) throw SqliteError(sqlite3_errmsg(db_));
     return false;
   }
-  // To the end, ready to be bound anew.
+  // Executes to the end and resets, so that new values can be bound.
   void run() {
     while (step()) {
     }
@@ -76,7 +76,7 @@ class SqliteStatement {
   int bound_ = 0;
 };
 
-// BEGIN now, COMMIT by commit(), else ROLLBACK.
+// BEGIN in the constructor, COMMIT in commit(), else ROLLBACK in the destructor.
 class SqliteTransaction {
  public:
   explicit SqliteTransaction(sqlite3* db) : db_(db) {

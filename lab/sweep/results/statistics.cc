@@ -1,4 +1,4 @@
-// See statistics.h.
+// Statistics of a sweep's report; see statistics.h.
 #include "lab/sweep/results/statistics.h"
 
 #include <algorithm>
@@ -10,9 +10,9 @@ namespace footfall::lab {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNormal95 = 1.959963984540054;  // quantile 0.975
+constexpr double kNormal95 = 1.959963984540054;  // 0.975 quantile of the normal distribution
 
-// From 1; equal values have the mean of their places.
+// Ranks from 1; equal values share their mean rank.
 std::vector<double> ranks(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

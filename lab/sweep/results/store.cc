@@ -1,4 +1,4 @@
-// Making, filling and resuming a file of results; see store.h.
+// Creates, fills and resumes a result database; see store.h.
 #include "lab/sweep/results/store.h"
 
 #include <fcntl.h>
@@ -42,7 +42,7 @@ std::string get_meta(sqlite3* db, const char* key) {
   return statement.step() ? statement.text(0) : std::string();
 }
 
-// Closed on exec, so that no child keeps it.
+// Opened close-on-exec, so that no child inherits the lock.
 int take_lock(const std::string& path) {
   const int fd = ::open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd < 0) throw SweepStoreError("cannot write '" + path + "': no right to");
@@ -61,7 +61,7 @@ void put_parameters(SqliteStatement& put, sqlite3_int64 row, const SweepDescript
   }
 }
 
-// The rows of the plan's runs: those that are there get their place, the others are new.
+// Adds rows for the plan's runs; existing rows get their position in the plan.
 void put_runs(sqlite3* db, const SweepDescription& sweep, const std::vector<std::size_t>& ids) {
   SqliteStatement(db, "UPDATE runs SET id = NULL").run();
   SqliteStatement place(db, "UPDATE runs SET id = ? WHERE key = ?");
@@ -141,15 +141,14 @@ std::string store_path(const std::string& folder, int shard, int shards) {
 SweepStore::SweepStore(const std::string& path, Access access)
     : path_(path), lock_(access == Access::write ? take_lock(path) : -1) {
   const int flags = access == Access::write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE
-                                            : SQLITE_OPEN_READWRITE;  // a reader may have to
-                                                                      // recover after a kill
+                                            : SQLITE_OPEN_READWRITE;  // to recover after a kill
   try {
     if (sqlite3_open_v2(path.c_str(), &db_, flags, nullptr) != SQLITE_OK) {
       throw SqliteError(sqlite3_errmsg(db_));
     }
-    sqlite3_busy_timeout(db_, 10'000);  // ms: somebody looks at it with another program
-    // Whatever kills the program, a commit stays; a power cut may undo the last ones, whose runs
-    // are then run again: not worth a wait for the disk after each run.
+    sqlite3_busy_timeout(db_, 10'000);  // ms; another program may be reading
+    // A commit survives a kill of the program. A power failure may undo the last ones, whose runs
+    // are then repeated; that is preferable to waiting for the disk after each run.
     if (access == Access::write) {
       execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
     }
@@ -165,7 +164,7 @@ SweepStore::SweepStore(const std::string& path, Access access)
 
 SweepStore::~SweepStore() { close(); }
 
-// Without an owner the lock's file says nothing; removed while the lock is held.
+// The lock file is meaningless without owner; it is removed while the lock is held.
 void SweepStore::close() {
   sqlite3_close(db_);
   if (lock_ < 0) return;

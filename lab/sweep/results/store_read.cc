@@ -1,4 +1,4 @@
-// Reading, joining and printing files of results; see store.h.
+// Reads, merges and prints result databases; see store.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of all that rows of a folder may be joined from: its shards, by name.
+// The shard files of a folder, sorted by name.
 std::vector<std::string> shard_files(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code error;
@@ -61,7 +61,7 @@ void SweepStore::make_view() const {
   std::string sql =
       "CREATE VIEW results AS SELECT r.id, r.world, r.fault, r.seed, r.status, r.end, r.wall_s";
   const auto add = [&sql](const std::set<std::string>& names, const char* table) {
-    // SQLite has room for 2000 columns.
+    // SQLite allows 2000 columns.
     std::size_t left = 900;
     for (const std::string& name : names) {
       if (left-- == 0) break;

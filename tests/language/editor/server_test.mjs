@@ -84,24 +84,24 @@ function offers(items, where, names) {
 
 const head = 'behavior: 1\nrobot: hume\nmachine:\n  states:\n    stand:\n';
 offers(await complete('behavior: 1\n|'), 'in a file',
-    {machine: 'root state', stacks: 'under a name', parameters: '$NAME'});
+    {machine: 'root state', stacks: 'named sets', parameters: '$NAME'});
 const inState = await complete(head + '      stack: dual\n      |');
 offers(inState, 'in a state', {
-  after: 'this long after entry', transitions: 'what may end it', contacts: 'what holds',
-  contact_transition: 'without a jump', on_entry: 'actions',
+  after: 'this long after entry', transitions: 'transitions from it', contacts: 'constrained contacts',
+  contact_transition: 'torque-continuous', on_entry: 'actions',
 });
 expect(!inState.some(({label}) => label === 'priority'), 'a key of tasks is offered in a state');
 offers(await complete(head + '      tasks:\n        height:\n          type: com_position\n          |'),
-    'in a task', {priority: 'null space', reference: 'what it should be', gains: 'gain'});
+    'in a task', {priority: 'null space', reference: 'desired value', gains: 'gain'});
 offers(await complete(head + '      tasks:\n        height:\n          type: |'),
     'as a type', {com_position: '', joint_posture: ''});
 offers(await complete(head + '      tasks:\n        height:\n          reference:\n            |'),
     'in a reference', {trajectory: 'shape'});
 offers(await complete(head +
     '      tasks:\n        height:\n          reference:\n            trajectory: cosine\n            |'),
-    'in a trajectory', {over: 'how long', to: 'ends'});
+    'in a trajectory', {over: 'duration', to: 'end value'});
 offers(await complete(head + '      transitions:\n        - on: go\n          |'),
-    'in a transition', {to: 'where it goes', when: 'true', do: 'actions'});
+    'in a transition', {to: 'target', when: 'condition', do: 'actions'});
 offers(await complete('base: other.yaml\nmachine:\n  |'), 'in a file with a base', {safe: 'fault'});
 
 const hovered = await open(head + '      aft|er: 10 ms\n      to: stand\n');

@@ -473,7 +473,7 @@ class Config(Case):
         text = self.footfall("config", path, "--explain", "for").stdout
         self.assertIn("t.yaml:2:6", text)
         self.assertIn("s.yaml:3:6", text)
-        self.assertIn("how long a run lasts", text)
+        self.assertIn("duration of a run", text)
         self.assertIn("the default is flat", self.footfall("config", path, "--explain", "world").stdout)
 
     def test_what_is_printed_is_the_behavior(self):

@@ -206,7 +206,7 @@ TEST_F(ScenarioLoader, KeysThatDoNotFitTogetherAreRefused) {
   EXPECT_EQ(problems_of("script: [{raise: tapped}]"),
             "4:10: error: one of the keys 'at', 'on' is missing\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, on: tapped, raise: go_to}]"),
-            "4:20: error: 'on' beside 'at': one of them is meant\n");
+            "4:20: error: 'on' beside 'at': only one is allowed\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, raise: tapped, over: 1 s}]"),
             "4:35: error: 'over' has a meaning only beside 'edit'\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, raise: contact.left_foot.touchdown}]"),

@@ -122,7 +122,7 @@ TEST(SweepPlan, MistakesAreReportedAtTheirPlace) {
   says("sample: {count: 2, of: {a: {uniform: [1, 2], within: [1, 2]}}}", "belongs to 'normal'");
   says("faults: [mocap.droput]", "did you mean 'mocap.dropout'");
   says("seeds: 9..1", "s.yaml:3:8: error: expected a seed, or a range");
-  says("scenario: README.md", "one of them is meant");
+  says("scenario: README.md", "only one is allowed");
   says("vary: {a: {from: 1, to: 2, count: 100000}}\nseeds: 1..1000", "more than 1000000 runs");
   says("varry: {a: [1]}", "did you mean 'vary'");
 }

@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from rows import bench, finish, pick
 
-# Each a largest difference over all states, divided by the largest acceleration involved.
+# Largest difference over all states, relative to the largest acceleration involved.
 BAR = 1e-9
 figures = bench("bench_algebra")
 names = ["task_acceleration", "dense_solve", "internal_force", "lower_priority"]

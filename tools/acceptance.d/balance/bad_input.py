@@ -18,7 +18,7 @@ def written(path, text):
 
 
 def replaced(text, pattern, replacement):
-    """`text` with the first match replaced; the library must hold what is broken here."""
+    """`text` with the first match replaced; fails if there is no match."""
     changed, count = re.subn(pattern, replacement, text, count=1, flags=re.M)
     if not count:
         raise SystemExit(f"figure: not measured: nothing matches '{pattern}' in {BALANCE}")
@@ -50,7 +50,7 @@ def cases(folder):
 
 
 def judge(name, arguments, folder):
-    """None if the answer is right, else what is wrong with it."""
+    """None if the output is correct, else the problem."""
     command = [FOOTFALL, *arguments, "--for", "1s", "--no-report" if "--log" in arguments else "--no-log"]
     try:
         done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)

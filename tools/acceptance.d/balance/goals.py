@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A goal that moves at constant velocity, 100 steps each: mean speed over the last 50 within 10 %."""
+"""A goal with constant velocity, 100 steps each: mean speed over the last 50 within 10 %."""
 import sys
 from pathlib import Path
 

@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from rows import BALANCE, SEED, WANT, finish, pick, run_all
 
 SEEDS = (SEED, SEED + 1)
-MUST, WANTED = 3000, 100_000  # steps
+MUST, WANTED = 3000, 100_000  # number of steps
 LIMITS = {"roll": 0.005, "pitch": 0.005, "height": 0.002, "yaw": 0.1}  # rad, m
 UNITS = {"roll": "rad", "pitch": "rad", "height": "m", "yaw": "rad"}
 

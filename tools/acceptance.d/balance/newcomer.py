@@ -13,7 +13,7 @@ from rows import ROOT, finish, scratch
 
 
 def timed(clone, log, *command):
-    """(exit code, seconds) of one command in the clone, with a compiler cache of its own that starts empty."""
+    """(exit code, seconds) of one command in the clone, with its own, initially empty compiler cache."""
     environment = dict(os.environ, CCACHE_DIR=str(clone / "out" / "ccache"))
     begin = time.monotonic()
     with open(log, "a", encoding="utf-8") as out:
@@ -32,7 +32,7 @@ def clone(folder, name):
 log = ROOT / "out" / "acceptance-newcomer.log"
 log.parent.mkdir(exist_ok=True)
 log.unlink(missing_ok=True)
-with scratch() as folder:  # a clone for each tool: neither profits from the other's build
+with scratch() as folder:  # one clone per tool, so that neither uses the other's build
     tested, demo = clone(folder, "test"), clone(folder, "demo")
     test_code, test_seconds = timed(tested, log, "./tools/test", "--yes")
     demo_code, demo_seconds = timed(demo, log, "./tools/demo", "--yes")

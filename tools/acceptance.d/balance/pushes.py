@@ -9,12 +9,12 @@ import statistics
 
 from rows import BEST, SEED, finish, run_all
 
-AFTER, MORE = 16, 60  # steps before the push and after it
+AFTER, MORE = 16, 60  # steps before and after the push
 
 
 def case(force, direction, phase):
     push = f"{force},0.1,{direction},step {AFTER} phase {phase}"
-    # One step more than AFTER + MORE: a push late in a step is followed by 60 whole ones.
+    # One step more than AFTER + MORE: a push late in a step is followed by 60 complete ones.
     return (force, direction, phase), [BEST, "--seed", SEED, "--steps", AFTER + MORE + 1, "--push", push]
 
 

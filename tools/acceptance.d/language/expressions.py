@@ -14,7 +14,7 @@ RANDOM = 100_000
 
 
 def agreement():
-    """(random expressions, how many of them muParser was asked) if all agree to the last bit, else None."""
+    """(number of random expressions, number evaluated by muParser) if all results are bit-identical, else None."""
     program = BUILD / "tests" / "unit" / "behaviors" / "expression_oracle_test"
     if not program.exists():
         give_up(f"{program} is not built")

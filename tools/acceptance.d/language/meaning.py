@@ -1,6 +1,6 @@
-"""Which one-token edits are another behavior that its author may have meant; the rules are listed in mistakes.py.
+"""Decides which one-token edits may be intended by the author; mistakes.py lists the rules.
 
-Everything here goes by the file's text and its YAML tree, never by what Footfall says about it.
+Based only on the file's text and its YAML tree, never on Footfall's output.
 """
 import re
 
@@ -9,21 +9,21 @@ from mutations import DIMENSIONS, parse, unit_of
 
 NAME = re.compile(r"[A-Za-z_]\w*$")
 REFERENCES = {"to", "initial", "default", "safe"}  # keys that name states
-# Keys whose value is one of a few words of the language; all of a row are as good as each other.
+# Keys whose value is one of a few keywords; those of one row are equally valid.
 WORDS = {"axes": [{"x", "y", "z"}, {"roll", "pitch", "yaw"}],
          "trajectory": [{"cosine", "minimum_jerk", "hold"}],
          "on_late": [{"keep_last", "closed_form"}],
          "form": [{"frozen", "continuous"}],
          "live": [{"true", "false"}], "retarget": [{"true", "false"}], "internal": [{"true", "false"}]}
-# Lists of things that each stand for themselves.
+# Lists of independent items.
 LISTS = {"transitions", "do", "on_entry", "on_exit", "invoke"}
-# Keys that a file may leave out, and nobody misses them.
+# Keys that may be omitted unnoticed.
 OPTIONAL = {"doc", "ranges", "on_entry", "on_exit", "internal", "retarget", "live", "form", "frame",
             "acceleration_limit", "width_offset", "goal_speed", "goal_error_limit", "reach"}
 
 
 def plain(node):
-    """The tree without places: ('s', text), ('l', items), ('m', ((key, value), ...))."""
+    """The tree without positions: ('s', text), ('l', items), ('m', ((key, value), ...))."""
     if isinstance(node, yaml.ScalarNode):
         return ("s", node.value, node.style in ("'", '"'))
     if isinstance(node, yaml.SequenceNode):
@@ -34,7 +34,7 @@ def plain(node):
 
 
 def removed(before, after, path=()):
-    """Paths of the whole entries that `after` lacks; None if they differ in anything else."""
+    """Paths of complete entries missing in `after`; None if there are other differences."""
     if before == after:
         return []
     if before[0] != after[0] or before[0] == "s":
@@ -62,7 +62,7 @@ def removed(before, after, path=()):
 
 
 class Meaning:
-    """What the words of one file stand for."""
+    """Meaning of the words in one file."""
 
     def __init__(self, mutator):
         self.mutator = mutator
@@ -89,7 +89,7 @@ class Meaning:
                 self._walk(value, path + (key.value,))
 
     def _dimensions(self):
-        """Dimension of every operand that the file's expressions use."""
+        """Dimension of every operand in the file's expressions."""
         out = {}
         for token in self.mutator.quantities:
             place = self.place(token)
@@ -103,7 +103,7 @@ class Meaning:
         return out
 
     def place(self, token):
-        """(path, is_key) of the scalar that holds the token."""
+        """(path, is_key) of the scalar that contains the token."""
         for start, end, path, is_key in self.places:
             if start <= token.start and token.end <= end:
                 return path, is_key
@@ -114,7 +114,7 @@ class Meaning:
         if after is not None:
             gone = removed(self.plain, plain(after))
             if gone is not None and all(self._may_go(path) for path in gone):
-                return True  # also nothing at all
+                return True  # also for an unchanged tree
         if mutation.kind == "unit":
             return self._same_quantity(mutation)
         if mutation.kind in ("misspell", "name"):
@@ -127,12 +127,12 @@ class Meaning:
             return len(path) > 1 and path[-2] in LISTS
         if key == "transitions":  # the state has another way out
             return any(p[:-1] == path[:-1] and p[-1] == "after" for _, _, p, is_key in self.places if is_key)
-        over_stack = "tasks" in path and "states" in path  # a state's word over its stack's
+        over_stack = "tasks" in path and "states" in path  # a state's key that overrides its stack's
         state = len(path) > 1 and path[-2] == "states" and not self._refers(key)
         return self.based or key in OPTIONAL or (over_stack and "stacks" not in path) or state
 
     def _refers(self, state):
-        """Whether something names the state."""
+        """Whether the state is referenced."""
         keys = "|".join(REFERENCES)
         pattern = rf"\b(?:{keys}): (?:\[[^]]*)?{state}\b|\bin\({state}\b|done\.state\.{state}\b"
         return bool(re.search(pattern, self.mutator.text))
@@ -169,7 +169,7 @@ class Meaning:
     def _same_kind_of_key(self, path, new):
         if not NAME.match(new) or len(path) < 2:
             return False
-        if path[-2] == "states":  # its name for itself alone
+        if path[-2] == "states":  # renamed without any reference
             return not self.based and not self._refers(path[-1]) and new not in self.states
         if path[-2] == "tasks" and "states" in path:
             return new in self.tasks

@@ -1,34 +1,34 @@
 #!/usr/bin/env python3
 """Usage: tools/acceptance.d/language/mistakes.py [--count N] [--seed S] [--show]
 
-One-token mistakes in the library's files and the examples: is each refused, or at least warned about, and does none
-that is accepted change what the robot does?
+One-token mistakes in the library's files and the examples: each must cause an error or at least a warning, and those
+accepted without either must not change the robot's motion.
 
 A mistake is one of: a letter of a word dropped, doubled, swapped with the next or replaced; a token dropped, doubled or
 swapped with the next one; a unit replaced by another; a word replaced by another word of the file; a line indented by
 one step more or less; a line of one key and its value dropped. Tokens are words, numbers with their unit, and punctuation, outside comments and
-free text (`doc:`, `log:`, `reason:`, texts in `events:`). Kinds are drawn with equal chances, files by their number of
-tokens.
+free text (`doc:`, `log:`, `reason:`, texts in `events:`). Kinds are drawn with equal probability, files in
+proportion to their number of tokens.
 
-Some such edits are another behavior, which its author may have meant; no tool can call them mistakes. They are not
-drawn. meaning.py decides by the file alone, never by what Footfall says; these are all of them:
-  - what leaves the YAML tree as it is;
+Some such edits give another valid behavior that the author may have intended; no tool can detect them. They are not
+drawn. meaning.py decides from the file alone, never from Footfall's output; these are all of them:
+  - edits that do not change the YAML tree;
   - a number for a number: another unit of the same dimension (in `at:` also a time for a part);
-  - a word for another of the same kind, where every one of them is meaningful: a state in `to`, `initial`, `default`
+  - a word for another of the same kind, if all of them are valid: a state in `to`, `initial`, `default`
     or `safe`; a stack in `stack` or `toward`; a gain table in `gains`; an axis of the same type of task; a shape of
     trajectory; `true` for `false`; an operand of an expression for one of the same dimension; another name of a mark;
   - a name that nothing else in the file refers to, for another name: a state, an internal force; a task that a state
-    lays over its stack for another task of the file;
-  - a whole entry removed that may be left out: a state that nothing refers to, a state's word over its stack's tasks,
+    overrides in its stack for another task of the file;
+  - an optional entry removed as a whole: a state without references, a state's override of its stack's tasks,
     one of several transitions or actions, one of the keys in meaning.OPTIONAL, and anything in a file with `base:`
-    (then the base's word holds).
+    (then the base's value applies).
 
 An accepted mistake is compared with the original: `footfall trace` with a script, and `footfall run` of 4 s in MuJoCo.
 
-  --count N   how many mistakes are judged (1000)
-  --seed S    of the draw (100; smaller ones are for tuning)
-  --least P   how many per cent must be refused or warned about (97); below that nothing is compared
-  --show      prints each that was accepted
+  --count N   number of mistakes (1000)
+  --seed S    seed of the random mistakes (100; smaller ones are for tuning)
+  --least P   minimum percentage refused or warned about (97); below that nothing is compared
+  --show      prints each accepted mistake
 Exit: 0 at least 97 % are refused or warned about and no accepted one changes anything, 1 otherwise, 2 bad usage.
 """
 import argparse
@@ -58,7 +58,7 @@ def footfall(*arguments):
 
 
 def draw(count, rng, folder):
-    """`count` mistakes as (original, mutation, path of the mutant); the files are copied for `base:` and `scripts:`."""
+    """`count` mistakes as (original, mutation, path of the mutated copy); copies the files of `base:` and `scripts:`."""
     for file in [*FILES, *(lua for file in FILES for lua in file.parent.glob("*.lua"))]:
         copy = folder / file.relative_to(rows.ROOT)
         copy.parent.mkdir(parents=True, exist_ok=True)
@@ -89,7 +89,7 @@ def verdict(path):
 
 
 def deeds(path, script):
-    """What the behavior does: its trace, and the figures of a short run that no clock has a part in."""
+    """The behavior's effects: its trace, and the figures of a short run without wall-clock times."""
     trace = footfall("trace", path, "--script", script)
     run = footfall("run", path, "--for", "4s", "--json", "--quiet", "--no-log")
     figures = re.sub(r'"(tick_us|real_time_factor|allocations|behavior)":(\{[^}]*\}|[^,}]*)', "", run.stdout)

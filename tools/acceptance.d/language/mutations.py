@@ -5,7 +5,7 @@ from collections import namedtuple
 import yaml
 
 Token = namedtuple("Token", "start end text kind line")  # kind: word, number, punctuation
-Mutation = namedtuple("Mutation", "text kind line what token new")  # text: the whole file afterwards
+Mutation = namedtuple("Mutation", "text kind line what token new")  # text: the complete mutated file
 
 DIMENSIONS = {"ms": "time", "s": "time", "mm": "length", "cm": "length", "m": "length", "N": "force", "Nm": "torque",
               "deg": "plain", "rad": "plain", "%": "plain", "Hz": "rate", "kg": "mass", "m/s": "velocity",
@@ -80,11 +80,11 @@ def misspelt(word, rng):
 
 
 def unit_of(token):
-    return NUMBER.fullmatch(" " + token.text, 1).group("unit")  # a sign needs something before it
+    return NUMBER.fullmatch(" " + token.text, 1).group("unit")  # the pattern needs a character before a sign
 
 
 def parse(text):
-    """The tree with places; None if it is not YAML."""
+    """The tree with positions; None if malformed."""
     try:
         return yaml.compose(text, Loader=yaml.BaseLoader)
     except yaml.YAMLError:
@@ -92,7 +92,7 @@ def parse(text):
 
 
 class Mutator:
-    """Draws mutations of one file; what they mean is judged elsewhere."""
+    """Draws mutations of one file; meaning.py judges their meaning."""
 
     def __init__(self, text):
         self.text = text
@@ -103,7 +103,7 @@ class Mutator:
         self.names = sorted({t.text for t in self.words})
         self.lines = text.split("\n")
         self.code_lines = sorted({t.line for t in self.tokens})
-        # Of one key and its value: to drop more than that is no slip of one token.
+        # Lines of one key and its value: dropping more is not a mistake of one token.
         self.short_lines = [n for n in self.code_lines if sum(t.line == n for t in self.tokens) <= 3]
         missing = {"unit": not self.quantities, "line": not self.short_lines}
         self.kinds = [kind for kind in KINDS if not missing.get(kind)]

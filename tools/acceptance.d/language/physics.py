@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Physics-aware checking: what a behavior cannot have is refused at its place, the library is clean."""
+"""Physics checks: impossible behaviors are refused at the right position, the library has no findings."""
 import sys
 from pathlib import Path
 
@@ -17,7 +17,7 @@ SHIPPED = [*sorted((ROOT / "behaviors" / "library").glob("*.yaml")), *sorted((RO
            ROOT / "tests" / "unit" / "behaviors" / "load" / "kim2016_printed.yaml"]
 PRINTED_KAPPA = ("kappa: [0.4, 0.4]", "kappa: {value: [-0.4, -0.4], range: [-1, 1]}")
 AT_935_MM = ("height: {value: 0.91 m}", "height: {value: 0.935 m}")
-# What is broken: replacements in the library's balance, exit code with --strict, words of one line, place of the token.
+# Mistakes: replacements in the library's balance, exit code with --strict, words of one message line, its position.
 CASES = {
     "yaw on one point foot": (
         [("axes: [pitch, roll], priority: 1, reference: 0}", "axes: [pitch, roll, yaw], priority: 1, reference: 0}"),
@@ -50,7 +50,7 @@ def place(text, token):
 
 
 def eigenvalue(kappa, reversal, height, step):
-    """Largest of the map from switch to switch: pendulum for T about the foot at (1+k)x + coth(wt')/w v."""
+    """Largest eigenvalue of the map from switch to switch: pendulum for T about the foot at (1+k)x + coth(wt')/w v."""
     w = math.sqrt(9.81 / height)
     c, s = math.cosh(w * step), math.sinh(w * step)
     p, q = 1 + kappa, 1 / (w * math.tanh(w * reversal))
@@ -60,7 +60,7 @@ def eigenvalue(kappa, reversal, height, step):
 
 
 def judge(name, folder):
-    """None if the broken file is answered as it should be, else what is wrong."""
+    """None if the output for the broken file is correct, else the problem."""
     changes, code, words, token = CASES[name]
     text = (ROOT / BALANCE).read_text(encoding="utf-8")
     for old, new in changes:
@@ -77,7 +77,7 @@ def judge(name, folder):
 
 
 def judge_eigenvalue(folder):
-    """The printed planner's eigenvalue as `check` says it, and what is wrong with it."""
+    """The planner's eigenvalue as printed by `check`, and the problem with it."""
     text = (ROOT / BALANCE).read_text(encoding="utf-8")
     for old, new in (PRINTED_KAPPA, AT_935_MM):
         text = text.replace(old, new, 1)

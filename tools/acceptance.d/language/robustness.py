@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Robustness: coverage-guided fuzzing under ASan and UBSan, then hostile files and the largest finds with the release."""
+"""Robustness: coverage-guided fuzzing under ASan and UBSan, then hostile files and the largest findings in release."""
 import os
 import re
 import subprocess
@@ -17,9 +17,9 @@ import hostile_files
 import make_corpus
 
 SECONDS = int(os.environ.get("FOOTFALL_FUZZ_SECONDS", 3600 if WANT else 600))
-SHARES = {"behavior": 0.6, "expression": 0.15, "robot": 0.25}  # of the time
-LONGEST = {"behavior": 8192, "expression": 512, "robot": 8192}  # bytes of an input
-REPLAYED = 200  # finds that the release reads again, the largest
+SHARES = {"behavior": 0.6, "expression": 0.15, "robot": 0.25}  # of the total time
+LONGEST = {"behavior": 8192, "expression": 512, "robot": 8192}  # bytes, limit of an input
+REPLAYED = 200  # number of the largest findings replayed with the release build
 FOLDER = ROOT / "out" / "fuzz"
 
 
@@ -53,14 +53,14 @@ def fuzz(target, seconds):
 
 
 def replay():
-    """The largest finds through the release: (how many, problems, longest time, largest memory)."""
+    """Runs the release build on the largest findings: (how many, problems, longest time, largest memory)."""
     files = sorted((FOLDER / "behavior").iterdir(), key=lambda f: f.stat().st_size, reverse=True)[:REPLAYED]
     problems, longest, largest = [], 0.0, 0.0
     for file in files:
         problem, seconds, peak = hostile_files.judge(FOOTFALL, file)
         longest, largest = max(longest, seconds), max(largest, peak)
         good = problem == "exit 0" and seconds <= hostile_files.SECONDS and peak <= hostile_files.MEGABYTES
-        if problem and not good:  # a find may be a good behavior
+        if problem and not good:  # a finding may be a valid behavior
             problems.append(f"{file.name}: {problem}, {seconds:.2f} s, {peak:.0f} MB")
     return len(files), problems, longest, largest
 

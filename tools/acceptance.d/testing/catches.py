@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Usage: tools/acceptance.d/testing/catches.py [NAME...] [--show]
 
-Does the quick set of our own library notice what breaks a robot? Each planted mistake of tests/runs/regression/planted.json
+Checks that the quick set detects mistakes in the library. Each planted mistake of tests/runs/regression/planted.json
 is applied alone to a copy of the tree, built and judged by `footfall test --labels quick`; those of harmless.json change
-nothing that matters and must pass. A mistake counts as caught if a scenario fails, and as well reported if the text of a
+nothing relevant and must pass. A mistake counts as caught if a scenario fails, and as well reported if the text of a
 failed expectation, its state or its reason names one of the mistake's `points_at` (a signal, a state, a quantity).
 
-  NAME...     only mistakes whose name holds one of these words
-  --show      prints what was reported for each
+  NAME...     only mistakes whose name contains one of these words
+  --show      prints the reports of each
 Exit: 0 at least 18 of 20 caught and well reported, none of the harmless ones reported; 1 otherwise; 2 bad usage; 4 the
 set fails without any mistake.
 """
@@ -33,7 +33,7 @@ def run(command, **options):
 
 
 def copy_tree():
-    """The tracked files and the changed ones, beside a build of their own that is kept between calls."""
+    """Copies the tracked and changed files; their build is kept between calls."""
     TREE.mkdir(parents=True, exist_ok=True)
     names = run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=rows.ROOT, check=True).stdout.split("\n")
     for name in filter(None, names):
@@ -58,7 +58,7 @@ def build():
 
 
 def apply(edits):
-    """Replaces each text, which must stand exactly once; returns what puts the files back."""
+    """Replaces each text, which must occur exactly once; returns a function that restores the files."""
     before = {}
     for name, old, new in edits:
         path = TREE / name
@@ -77,7 +77,7 @@ def put_back(before):
 
 
 def judge(out):
-    """What the quick set complains of, one text for each broken expectation or run; nothing if it passes."""
+    """The failures of the quick set, one text for each failed expectation or run; empty if it passes."""
     result = out / "result.json"
     result.unlink(missing_ok=True)
     done = run([BUILD / "apps" / "footfall", "test", "tests/runs/regression", "--labels", "quick", "-j", rows.PROCESSES,
@@ -136,7 +136,7 @@ def main():
         print(f"{'caught' if failures else 'silent'}  {mistake['name']}: {', '.join(named)}", file=sys.stderr, flush=True)
         if arguments.show:
             print("\n".join("        " + line for line in failures[:12]), file=sys.stderr)
-    build()  # as it was, for the next time
+    build()  # restore the build for the next call
     missed = [m["name"] for m in planted if m["name"] not in pointed]
     figure = (f"{len(caught)} of {len(planted)} caught, {len(pointed)} at the right place"
               f"{' (not: ' + ', '.join(missed) + ')' if missed else ''}; {len(alarms)} of {len(harmless)} harmless edits reported")

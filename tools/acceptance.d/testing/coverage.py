@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the full set reaches of the library's behaviors: states, transitions, outcomes of guards."""
+"""Coverage of the library's behaviors by the full set: states, transitions, outcomes of guards."""
 import json
 import subprocess
 import sys

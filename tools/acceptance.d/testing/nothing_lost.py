@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """kill -9 at random moments of runs, half of them paced by the wall clock: every log is readable, replays bit for bit as
-far as it goes, and reaches to 100 ms before the last time that the run itself told on its status line. Half of the
+far as it goes, and ends at most 100 ms before the last time on the run's status line. Half of the
 kills come at once after such a line, the others up to a fifth of a second later."""
 import os
 import pty
@@ -23,7 +23,7 @@ RATE = 1500.0  # ticks per second
 
 
 class Run:
-    """A run whose status line is read from a terminal of its own."""
+    """A run with its status line on a separate terminal."""
 
     def __init__(self, folder, paced):
         self.terminal, theirs = pty.openpty()
@@ -35,7 +35,7 @@ class Run:
         os.close(theirs)
 
     def listen(self, seconds, lines=None):
-        """Takes what is told in this time; returns early once `lines` status lines have come."""
+        """Reads output for this time; returns early after `lines` status lines."""
         end = time.monotonic() + seconds
         while time.monotonic() < end and (lines is None or self.lines < lines):
             if self.process.poll() is not None:

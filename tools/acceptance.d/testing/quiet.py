@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Flakes of the quick set: repeats on an idle machine and with every core loaded; each must pass whole."""
+"""Flaky tests of the quick set: repetitions on an idle machine and with every core loaded; all must pass."""
 import os
 import subprocess
 import sys
@@ -14,7 +14,7 @@ REPEATS = int(os.environ.get("FOOTFALL_REPEATS", 50 if WANT else 10))
 
 
 def repeat(folder):
-    """(seconds, first failing line or nothing)."""
+    """(seconds, first failing line or an empty text)."""
     begin = time.monotonic()
     done = subprocess.run([FOOTFALL, "test", "tests/runs/regression", "--quick", "-j", str(PROCESSES), "--out", folder,
                            "--no-report"], cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=1200)

@@ -24,7 +24,7 @@ def call(*arguments):
 
 
 def behaviors():
-    """Those that a robot can run, by path."""
+    """Behaviors with a robot, by path."""
     found = sorted(Path(ROOT, "behaviors/library").glob("*.yaml")) + sorted(Path(ROOT, "examples").glob("*.yaml"))
     runnable = [p for p in found if re.search(r"^(robot|base):", p.read_text(encoding="utf-8"), flags=re.M)]
     return [str(p.relative_to(ROOT)) for p in runnable]
@@ -42,7 +42,7 @@ def case(k, generator, names):
 
 
 def replayed(arguments, folder):
-    """Empty if the log replays; else why not. A fall is a log like any other."""
+    """Empty if the log replays, else the reason. Falls are included."""
     done = call("run", *arguments, "--no-report", "--quiet", "--log", folder)
     if done.returncode not in (0, 1):
         return f"{' '.join(map(str, arguments))}: {done.stderr.strip()[:200]}"
@@ -53,7 +53,7 @@ def replayed(arguments, folder):
 
 
 def gain_located(folder):
-    """One bit more in one gain: named first, with both values, and a first differing tick."""
+    """A change of one bit in one gain must be reported first, with both values, and with the first differing tick."""
     call("run", "balance_best", "--seed", SEED, "--for", "2s", "--no-report", "--quiet", "--log", folder / "log")
     values = gains()
     wrong = list(values)

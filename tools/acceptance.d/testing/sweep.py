@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Usage: tools/acceptance.d/testing/sweep.py
 
-Sweeps keep the machine busy, and no way to die costs them more than the runs in flight.
+Sweeps use all processors, and a kill loses no more than the active runs.
 - A sweep of 200 runs of the tuned behavior (4 lift times x 5 gains x 10 seeds, 3 s each), two at a time: processor time
-  of the runs over 2 x wall time. Judged beside what two endless loops get on this machine at the same time of day: a
-  machine that is shared gives less than 2 cores to anyone.
+  of the runs over 2 x wall time. Compared with two endless loops on this machine at the same time, because a
+  shared machine gives less than 2 cores.
 - A sweep of 60 short runs is killed with SIGKILL at random moments until it is done: every run is there once, none was
   recorded twice, what was recorded before a kill is the same after it, and no child outlives its parent by 1 s.
 With ACCEPTANCE_WANT 100 kills, else 30.
@@ -41,7 +41,7 @@ def finished(out, what="id, finished, cpu_s"):
     database = sqlite3.connect(path, timeout=10)
     try:
         return database.execute(f"SELECT {what} FROM runs WHERE status != 'pending' ORDER BY id").fetchall()
-    except sqlite3.OperationalError:  # killed before the plan was in
+    except sqlite3.OperationalError:  # killed before the plan was stored
         return []
     finally:
         database.close()
@@ -118,7 +118,7 @@ def kills(folder):
         if ended is not None:
             if ended != 0 or len(now) != 60:
                 wrong.append(f"ended with {ended} after {len(now)} of 60 runs")
-            if count < KILLS:  # another round
+            if count < KILLS:  # next round
                 out = folder / f"killed-{count}"
                 command[command.index("--out") + 1] = str(out)
                 before = []

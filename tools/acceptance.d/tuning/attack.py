@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Damaged packets on every channel that the engine listens to, under AddressSanitizer: only counted rejections, and the
 next honest edit is answered. From another network namespace, joined by a cable: forged edits are refused for lack of the
-key; recorded ones are not done again, and refused by the next run. Needs root for the namespace."""
+key; recorded ones are not executed again, and refused by the next run. Needs root for the namespace."""
 import os
 import signal
 import subprocess
@@ -14,11 +14,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from live_runs import Engine, program, some_url
 from rows import BEST, ROOT, finish, give_up, progress, progress_done, scratch
 
-PACKETS = int(os.environ.get("FOOTFALL_ATTACK_PACKETS", "1000000"))  # heard on each channel
+PACKETS = int(os.environ.get("FOOTFALL_ATTACK_PACKETS", "1000000"))  # received on each channel
 RATE = 6000  # packets a second on each channel
-SENT_MORE = 1.1  # the network itself loses some of such a flood
+SENT_MORE = 1.1  # the network itself loses some packets of such a flood
 ASAN = ROOT / "build" / "asan" / "apps" / "footfall"
-EDITS = 40  # that are recorded
+EDITS = 40  # recorded edits
 NAMESPACE, OURS, THEIRS = "footfall-attack", "ffattack0", "ffattack1"
 GROUP = "239.255.77.68"
 
@@ -31,7 +31,7 @@ def build():
 
 
 def flood(key):
-    """(packets heard on the channel that heard less, rejections by reason, problems)."""
+    """(packets received on the channel with fewer, rejections by reason, problems)."""
     url = some_url()
     sent = int(PACKETS * SENT_MORE)
     with Engine(BEST, "--for", "100000s", "--no-log", "--lcm-key", key, url=url, binary=ASAN,
@@ -71,7 +71,7 @@ class Cable:
 
 
 def from_elsewhere(folder, key):
-    """What became of forged and recorded edits: (text, problems)."""
+    """Result of forged and recorded edits: (text, problems)."""
     url, problems, recording = some_url(GROUP, ttl=1), [], str(Path(folder) / "edits.lcm")
     engine_options = (BEST, "--realtime", "--for", "600s", "--no-log", "--lcm-key", key)
     with Cable() as inside:

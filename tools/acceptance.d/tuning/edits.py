@@ -19,7 +19,7 @@ from rows import BEST, FOOTFALL, ROOT, SEED, finish, give_up, scratch
 COUNT = int(os.environ.get("FOOTFALL_EDITS", "100000"))
 RATE = 500.0  # 1/s
 TICKS = 1500.0  # 1/s
-SLOWEST_ANSWER = 20.0  # ms, the want's p99
+SLOWEST_ANSWER = 20.0  # ms, want bar for p99
 
 
 def edit_times(log):
@@ -75,7 +75,7 @@ counts = {
     "invalid applied": load["invalid_accepted"],
     "torn or lost": load["values_wrong"],
     "applied but not accepted": abs(live["applied"] - load["accepted"]) + max(0, len(times) - load["accepted"]),
-    # A tick that the log dropped took its edits along.
+    # A tick dropped by the log lost its edits, too.
     "accepted but not in the log": 0 if seen < 1.0 else load["accepted"] - len(times),
 }
 wrong = {name: count for name, count in counts.items() if count}

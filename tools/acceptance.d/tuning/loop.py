@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What tuning costs the tick: telemetry at its usual rate and in every tick, 500 edits a second; heap calls, locks."""
+"""Cost of live tuning in the tick: telemetry at its default rate and in every tick, 500 edits/s; heap calls, locks."""
 import sys
 from pathlib import Path
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""50 reloads while the tuned behavior steps, 10 of them of broken files: each good file takes over and the robot never
-falls; each broken one is refused in exactly the words of `footfall check`, and the run goes on."""
+"""50 reloads while the tuned behavior steps, 10 of them of broken files: each valid file takes effect, the robot never
+falls; each broken one is refused with exactly the text of `footfall check`, and the run continues."""
 import os
 import re
 import signal
@@ -15,9 +15,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from rows import BEST, FOOTFALL, ROOT, SEED, finish, last_json, progress, progress_done, scratch
 
 RELOADS = int(os.environ.get("FOOTFALL_RELOADS", "50"))
-PATIENCE = 60.0  # s of wall time for one
+PATIENCE = 60.0  # s of wall time for one reload
 
-# Each as a file that a person would save. {k} and {x} vary: x from 0.8 to 1.2.
+# Valid files as a user would save them. {k} and {x} vary: x from 0.8 to 1.2.
 GOOD = [
     "gains: {{single: {{swing: {{kp: {kp:.6g}, kd: {kd:.6g}}}}}}}",
     "gains: {{dual: {{attitude: {{kp: [{a:.6g}, {b:.6g}]}}}}}}",
@@ -50,7 +50,7 @@ def good(k):
 
 
 class Run:
-    """A run with --reload, and what it has told so far."""
+    """A run with --reload, and its output so far."""
 
     def __init__(self, file, folder):
         self.process = subprocess.Popen(
@@ -64,7 +64,7 @@ class Run:
             self.lines.append(line.rstrip("\n"))
 
     def verdict(self, first):
-        """Waits for the end of what is told from line `first` on; (kind, lines)."""
+        """Waits for the complete message from line `first` on; (kind, lines)."""
         until = time.monotonic() + PATIENCE
         while time.monotonic() < until and self.process.poll() is None:
             new = self.lines[first:]
@@ -84,7 +84,7 @@ def words_of_check(file):
 
 
 def save(file, text):
-    """In two steps, as some editors do."""
+    """Saves in two steps, as some editors do."""
     half = len(text) // 2
     with open(file, "w", encoding="utf-8") as out:
         out.write(text[:half])
@@ -94,7 +94,7 @@ def save(file, text):
 
 
 def one(run, file, k, broken):
-    """Saves the k-th file; empty if what followed is right, else what was wrong."""
+    """Saves the k-th file; empty if the reaction is correct, else the problem."""
     text = BROKEN[(k // 5) % len(BROKEN)] if broken else good(k)
     before = len(run.lines)
     save(file, f"base: {ROOT / BEST}\n{text}\n")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Every live value of every behavior in library and examples is changed and saved: the files differ in values only, they
 hold exactly what was asked for, and their run is, bit for bit, the run of the old file in which a scenario `set`s the
-same values at 0 s, at once. What the first states read when they are entered (`after: $beat`) they read before the first
-edit can come: the files in BEFORE get their values from --set instead."""
+same values at 0 s, at once. The first states read values at their entry (`after: $beat`), before the first edit can be
+applied: the files in BEFORE get their values from --set instead."""
 import os
 import random
 import re
@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from rows import FOOTFALL, PROCESSES, ROOT, SEED, finish, progress, progress_done, scratch
 
-ROUNDS = int(os.environ.get("FOOTFALL_ROUNDS", "4"))  # of each file: the first half near the shipped values
+ROUNDS = int(os.environ.get("FOOTFALL_ROUNDS", "4"))  # rounds per file: the first half near the shipped values
 BEFORE = ("examples/nod.yaml",)
 FOLDERS = ("behaviors/library", "examples")
 LIVE = re.compile(r"^\$?(\S+) .*(?:parameter|gain) (\[.*?\]|\S+), range (\S+) to ([^,]+), live", flags=re.M)
@@ -38,7 +38,7 @@ def is_behavior(path):
 def live_values(path):
     """(name, shipped values, least, most) of every live parameter and gain."""
     found = []
-    for name, value, least, most in LIVE.findall(call("signals", path, good=(0, 2))):  # 2: it has none
+    for name, value, least, most in LIVE.findall(call("signals", path, good=(0, 2))):  # exit code 2: no parameters
         found.append((name, [float(x) for x in value.strip("[]").split(",")], float(least), float(most)))
     return found
 
@@ -61,7 +61,7 @@ def without_edits(log):
 
 
 def runs_differ(old, new, settings, top, seconds):
-    """Empty if the two runs are the same; else where they part."""
+    """Empty if the two runs are equal, else their first difference."""
     scenario = top / "edited.yaml"
     script = ", ".join(f"{name}: {text}" for name, text in settings)
     scenario.write_text(f"scenario: 1\nbehavior: {old}\nworld: flat\nseeds: {SEED}..{SEED}\nfor: {seconds} s\n"
@@ -103,7 +103,7 @@ def saved(name, k, tree):
 
 
 def problem_of(name, k, top):
-    """Empty if one file with all its live values changed is as it must be; and how many they are."""
+    """Empty if one file with all its live values changed is correct, and their number."""
     fresh(top / "old")
     settings = saved(name, k, top / "new")
     if not settings:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Two clients at once add to one parameter, each expecting the revision that it read: no change is lost, who is late is
-told, and each hears of the other's change within 0.2 s of its being sent."""
+"""Two clients at once add to one parameter, each expecting the revision that it read: no change is lost, conflicts
+are reported, and each receives the other's change within 0.2 s after it was sent."""
 import os
 import subprocess
 import sys
@@ -11,8 +11,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from live_runs import Engine, program, some_url
 from rows import BEST, SEED, finish, give_up
 
-COUNT = int(os.environ.get("FOOTFALL_CHANGES", "150"))  # of each
-SOON = 200.0  # ms
+COUNT = int(os.environ.get("FOOTFALL_CHANGES", "150"))  # changes per client
+SOON = 200.0  # ms, limit
 
 try:
     url = some_url()
