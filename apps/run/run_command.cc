@@ -9,6 +9,7 @@
 #include "apps/run/run_reload.h"
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "core/text/whole_file.h"
 #include "lab/run/run.h"
 #include "lab/run/summary.h"
 #include "lab/scenario/loader.h"
@@ -131,8 +132,9 @@ int run_behavior(const RunOptions& options) {
   if (log) {
     log->close();
     if (live.reloads) live.reloads->close();
-    write_file(options.log + "/summary.json", lab::summary_json(id, result, true).dump(2) + "\n");
-    write_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
+    core::write_whole_file(options.log + "/summary.json",
+                           lab::summary_json(id, result, true).dump(2) + "\n");
+    core::write_whole_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
   }
   if (!options.quiet)
     std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);

@@ -48,8 +48,6 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,
                                             const sim::WorldDescription& world,
                                             lab::RunIdentity& id);
-// Writes a small text file whole or not at all.
-void write_file(const std::string& path, const std::string& text);
 
 // `footfall run` of a scenario file; the exit code. Throws InputError.
 int run_scenario_file(RunOptions options);

@@ -33,7 +33,7 @@ struct Blessing {
 };
 // Those of the suite's runs with a golden trace that differ from it, or whose run is not good.
 std::vector<Blessing> blessings(const Suite& suite);
-// Copies it beside and renames. Throws std::runtime_error.
+// Replaces the golden trace. Throws std::runtime_error.
 void bless(const Blessing& blessing);
 
 }  // namespace footfall::lab
