@@ -128,6 +128,8 @@ inline double evaluate(const ExpressionPool& pool, int expression,
   }
 }
 
+struct Statistic;
+
 // The names that an expression may use.
 struct ExpressionScope {
   const core::SignalTable* signals = nullptr;
@@ -139,9 +141,9 @@ struct ExpressionScope {
   int entry_axis = -1;                                             // what a lone `entry` is
   core::Dimension entry_dimension;                                 // of the task's axes
   const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
-  // `max mean rms count` of one signal over a run (expectations only), "max abs" of its magnitude:
-  // the index of the signal that holds it, -1 if there is none.
-  std::function<int(std::string_view reduction, int signal)> find_reduction;
+  // A statistic of one signal, or of its magnitude, over a run (expectations only): the index of
+  // the signal that holds it, -1 if there is none.
+  std::function<int(const Statistic& statistic, bool magnitude, int signal)> find_statistic;
 };
 
 // Where and why an expression was refused; `offset` counts bytes from the start of the text.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "behaviors/compiled/behavior.h"
+#include "behaviors/expression/statistics.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/signal_table.h"
 
@@ -62,11 +63,12 @@ struct ScriptEntry {
   std::optional<double> duration;  // s, of fault or hold; none: to the end
 };
 
-// `max mean rms count` of a signal (or of its magnitude) over the time that is judged.
-struct Reduction {
-  std::string function;  // "max", or "max abs": of the magnitude
-  int signal = 0;        // into ScenarioDescription::signals
-  int value = 0;         // the signal that holds it, likewise
+// A statistic of a signal over the time that is judged.
+struct SignalStatistic {
+  const behaviors::Statistic* statistic = nullptr;
+  bool magnitude = false;  // of |signal|
+  int signal = 0;          // into ScenarioDescription::signals
+  int value = 0;           // the signal that holds it, likewise
 };
 
 struct Expectation {
@@ -110,8 +112,8 @@ struct ScenarioDescription {
   std::vector<Expectation> expectations;
   std::optional<GoldenSpec> golden;
   std::unique_ptr<behaviors::Behavior> behavior;
-  core::SignalTable signals;  // the behavior's, then `steps` and those of the reductions
-  std::vector<Reduction> reductions;
+  core::SignalTable signals;  // the behavior's, then `steps` and those of the statistics
+  std::vector<SignalStatistic> statistics;
   behaviors::ExpressionPool expressions;
   std::vector<std::string> files;           // by core::Mark::file of what the scenario says
   std::vector<std::string> behavior_files;  // likewise of what its behavior says

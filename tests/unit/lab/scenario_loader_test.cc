@@ -137,9 +137,10 @@ TEST_F(ScenarioLoader, ExpectationsAreCompiledAgainstTheSignalsOfTheRun) {
             (std::vector<std::string>{"step.right_foot.lift", "step.right_foot.land",
                                       "step.left_foot.dual"}));
   EXPECT_EQ(expectations[4].within, 1.0);
-  ASSERT_EQ(scenario.reductions.size(), 2U);
-  EXPECT_EQ(scenario.reductions[0].function, "max abs");
-  EXPECT_EQ(scenario.signals.info(scenario.reductions[0].signal).name, "base.rpy.pitch");
+  ASSERT_EQ(scenario.statistics.size(), 2U);
+  EXPECT_EQ(scenario.statistics[0].statistic->name, "max");
+  EXPECT_TRUE(scenario.statistics[0].magnitude);
+  EXPECT_EQ(scenario.signals.info(scenario.statistics[0].signal).name, "base.rpy.pitch");
   behaviors::EvaluationContext context;
   const auto judge = [&](int expectation, int signal, double value) {
     scenario.signals[signal] = value;
@@ -150,8 +151,8 @@ TEST_F(ScenarioLoader, ExpectationsAreCompiledAgainstTheSignalsOfTheRun) {
   };
   EXPECT_EQ(judge(0, scenario.signals.find("steps"), 299.0), 0.0);
   EXPECT_EQ(judge(0, scenario.signals.find("steps"), 300.0), 1.0);
-  EXPECT_EQ(judge(1, scenario.reductions[0].value, 0.04), 1.0);
-  EXPECT_EQ(judge(1, scenario.reductions[0].value, 0.06), 0.0);
+  EXPECT_EQ(judge(1, scenario.statistics[0].value, 0.04), 1.0);
+  EXPECT_EQ(judge(1, scenario.statistics[0].value, 0.06), 0.0);
 }
 TEST_F(ScenarioLoader, AScenarioInheritsFromItsBase) {
   std::ofstream(folder_ / "base.yaml") << kScenario;
@@ -213,6 +214,18 @@ TEST_F(ScenarioLoader, KeysThatDoNotFitTogetherAreRefused) {
             "4:27: error: 'contact.left_foot.touchdown' is raised by the engine only\n");
   EXPECT_EQ(problems_of("expect: [{never: rms(com.pos.z) < 1 m}]"),
             "4:18: error: unknown function 'rms'\n");
+}
+// 1500 ticks a second.
+TEST_F(ScenarioLoader, AStatisticThatKeepsItsSamplesIsOfAMillionTicksAtMost) {
+  const std::string head = "scenario: 1\nbehavior: walk.yaml\nfor: 700 s\n";
+  load(head + "expect: [p95(com.pos.z) < 2 m]\n");
+  EXPECT_EQ(diagnostics_.to_string(),
+            path() +
+                ":4:10: error: p95() is of at most 1000000 ticks, these are 1050000: give it a "
+                "shorter time with 'between'\n");
+  load(head +
+       "expect: [{that: p95(com.pos.z) < 2 m, between: [40 s, 700 s]}, rms(com.pos.z) < 2 m]\n");
+  EXPECT_EQ(diagnostics_.to_string(), "");
 }
 TEST_F(ScenarioLoader, AGoldenTraceAndAnEndAreChecked) {
   EXPECT_EQ(problems_of("golden: {tolerance: {com.pos.zz: 2 mm}}"),
