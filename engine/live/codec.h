@@ -1,5 +1,5 @@
-// Messages of live tuning (engine/lcm) to packets and back. Who sends a packet may mean harm:
-// nothing of it is believed, or made room for, before all of it was looked at.
+// Messages of live tuning (engine/lcm) to packets and back. A packet may be forged: it is validated
+// completely before anything is decoded or allocated.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ const char* packet_problem_name(PacketProblem problem);
 
 using PacketBytes = std::vector<std::uint8_t>;
 
-// Both are there for hello_t, request_t, answer_t, catalogue_t, values_t, telemetry_t.
+// Both exist for every message of engine/lcm/messages with the constant LARGEST_PACKET.
 
 // With a key, what has a `mac` must be signed by it; that is checked before anything else is read.
 // The message is written only if the packet is well formed: texts are UTF-8 without control
