@@ -50,10 +50,8 @@ void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& 
 
 // The parameter that is the goal of the first planner; lab::has_goal holds.
 const behaviors::ParameterInfo& goal_parameter(const behaviors::Behavior& behavior) {
-  const int slot = behavior.planners.front().goal_slot;
-  return *std::ranges::find_if(behavior.parameters, [slot](const auto& info) {
-    return slot >= info.slot && slot < info.slot + info.size;
-  });
+  const int index = behavior.parameter_of_slot(behavior.planners.front().goal_slot);
+  return behavior.parameters[static_cast<std::size_t>(index)];
 }
 
 // The options move the goal as an operator would, so it has to be live.

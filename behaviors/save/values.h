@@ -11,12 +11,6 @@
 
 namespace footfall::behaviors {
 
-// New values of a parameter or gain, or of one of its components (`goal.y`).
-struct SavedValue {
-  std::string name;            // as in Behavior::parameters
-  std::vector<double> values;  // SI, as many as it has
-};
-
 // One place that changes, for people.
 struct SavedPlace {
   std::string name;                // parameter or gain
@@ -47,7 +41,7 @@ struct SavePlan {
 // other value of the file (or overlay) as before. Problems of the files go to `diagnostics`; the
 // plan then is refused too.
 SavePlan plan_save(const std::string& path, const LoadOptions& options,
-                   const std::vector<SavedValue>& values, const std::string& overlay,
+                   const std::vector<NamedValue>& values, const std::string& overlay,
                    core::Diagnostics& diagnostics);
 
 // The plan as `diff -u` shows it, file by file.

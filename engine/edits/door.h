@@ -33,18 +33,11 @@ enum class EditSource : std::uint8_t {
 };
 const char* edit_source_name(EditSource source);
 
-// New values of a parameter or gain.
-struct EditValue {
-  int parameter = -1;          // into Behavior::parameters
-  int component = -1;          // one of its values; -1: all of them
-  std::vector<double> values;  // SI, one for each that is meant
-};
-
 struct EditBatch {
   std::uint64_t id = 0;  // the asker's; 0: the door gives one
   EditSource source = EditSource::live;
-  std::vector<EditValue> values;
-  double over = 0.0;                      // s: the values move linearly, tick by tick
+  std::vector<behaviors::SlotValue> values;  // each slot at most once
+  double over = 0.0;                         // s: the values move linearly, tick by tick
   std::vector<int> events;                // into Behavior::events, raised in the tick that applies
   std::optional<std::uint64_t> revision;  // refused unless this many batches were applied before
   std::string who;                        // for the log; printable, cut at kMaxWho bytes
@@ -68,11 +61,6 @@ struct EditAnswer {
   std::int64_t tick = 0;
   std::uint64_t revision = 0;  // batches applied so far, this one included
   std::size_t value_count = 0;
-};
-
-struct SlotValue {
-  int slot = 0;  // of Machine::parameters()
-  double value = 0.0;
 };
 
 inline constexpr std::size_t kMaxEditEvents = 16;  // of one batch
@@ -102,8 +90,8 @@ class FixedText {
 struct EditOrder {
   std::uint64_t id = 0;
   EditSource source = EditSource::live;
-  std::int64_t ramp_ticks = 0;    // 0: at once
-  std::vector<SlotValue> values;  // room for every slot; the first value_count count
+  std::int64_t ramp_ticks = 0;               // 0: at once
+  std::vector<behaviors::SlotValue> values;  // room for every slot; the first value_count count
   std::size_t value_count = 0;
   std::array<int, kMaxEditEvents> events{};
   std::size_t event_count = 0;
@@ -115,7 +103,9 @@ struct EditOrder {
   EditOutcome outcome = EditOutcome::applied;
   std::uint64_t revision = 0;
 
-  std::span<const SlotValue> new_values() const noexcept { return {values.data(), value_count}; }
+  std::span<const behaviors::SlotValue> new_values() const noexcept {
+    return {values.data(), value_count};
+  }
   std::span<const int> new_events() const noexcept { return {events.data(), event_count}; }
 };
 
@@ -227,6 +217,12 @@ class EditDoor {
   std::vector<int> moving_;  // slots that ramp
   bool moved_ = false;
 };
+
+// Adds new values of a parameter, of all its slots or (component >= 0) of one. A wrong component or
+// number of values adds a reason instead.
+void add_values(const behaviors::Behavior& behavior, behaviors::ParameterPart part,
+                std::span<const double> values, std::vector<behaviors::SlotValue>& to,
+                std::vector<std::string>& reasons);
 
 // Every reason against a batch, naming parameter, value, unit and range; `revision`: in force.
 std::vector<std::string> reasons_against(const behaviors::Behavior& behavior,

@@ -10,7 +10,7 @@ namespace footfall::engine {
 
 // A change of values: where each was (or was going), and where it was sent.
 struct LiveChange {
-  std::vector<EditValue> before, after;
+  std::vector<behaviors::SlotValue> before, after;
 };
 
 class LiveHistory {

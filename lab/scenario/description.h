@@ -35,13 +35,6 @@ struct ScriptedPush {
   double direction = 0.0;  // rad in the heading frame, 0 forward, pi/2 left
 };
 
-// New values of a parameter or gain, SI: of all its slots, or of one (`goal.y`).
-struct NewValues {
-  int parameter = 0;  // into Behavior::parameters
-  std::vector<double> values;
-  int first = 0;  // which of the parameter's slots the first value is for
-};
-
 enum class InjectedFault : std::uint8_t {
   mocap_dropout,
   imu_dropout,
@@ -53,9 +46,9 @@ struct ScriptEntry {
   core::Mark mark;
   Moment moment;
   std::optional<ScriptedPush> push;
-  std::vector<NewValues> edit;  // with `raise`, as one live edit
-  double over = 0.0;            // s, ramp of the edit
-  std::vector<NewValues> set;
+  std::vector<behaviors::SlotValue> edit;  // with `raise`, as one live edit
+  double over = 0.0;                       // s, ramp of the edit
+  std::vector<behaviors::SlotValue> set;
   int raise = -1;  // into Behavior::events
   std::optional<InjectedFault> fault;
   std::string hold;                // a body; empty: none

@@ -11,12 +11,6 @@
 
 namespace footfall::apps {
 
-// A new value of a slot, and the target that the person saw when they asked for it.
-struct WantedValue {
-  int entry = 0;  // into TuneModel::entries
-  double seen = 0.0, value = 0.0;
-};
-
 class TuneOutbox {
  public:
   // Where the entry goes as far as this person knows: asked for, else the target in force.
@@ -41,12 +35,17 @@ class TuneOutbox {
   bool empty() const { return queue_.empty() && !sent_; }
 
  private:
+  // A new value, and the target that the person saw when they asked for it.
+  struct Wanted {
+    int entry = 0;  // into TuneModel::entries
+    double seen = 0.0, value = 0.0;
+  };
   struct Ask {
     footfall_lcm::request_t request;
-    std::vector<WantedValue> wanted;  // empty: the request is whole
+    std::vector<Wanted> wanted;  // empty: the request is whole
     double over = 0.0;
   };
-  const WantedValue* find_wanted(int entry) const;
+  const Wanted* find_wanted(int entry) const;
   bool prepare(const TuneModel& model, Ask& ask);
 
   std::deque<Ask> queue_;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "core/index.h"
 #include "lab/scenario/loader.h"
 
 namespace footfall::lab {
@@ -102,11 +103,14 @@ TEST_F(ScenarioLoader, TheScriptSaysWhenAndWhat) {
   EXPECT_EQ(script[1].moment.phase, 0.5);
   EXPECT_EQ(paths_of(scenario, script[1].moment.states),
             (std::vector<std::string>{"step.right_foot.lift", "step.left_foot.lift"}));
-  ASSERT_EQ(script[2].edit.size(), 2U);
-  EXPECT_EQ(script[2].edit[0].values, std::vector<double>{0.16});
-  EXPECT_EQ(script[2].edit[1].values, (std::vector<double>{230.0, 240.0, 410.0}));
+  const auto values_of = [](const std::vector<behaviors::SlotValue>& changes) {
+    std::vector<double> values;
+    for (const auto& change : changes) values.push_back(change.value);
+    return values;
+  };
+  EXPECT_EQ(values_of(script[2].edit), (std::vector<double>{0.16, 230.0, 240.0, 410.0}));
   EXPECT_EQ(script[2].over, 0.5);
-  EXPECT_EQ(script[3].edit[0].values, (std::vector<double>{1.0, 0.0}));
+  EXPECT_EQ(values_of(script[3].edit), (std::vector<double>{1.0, 0.0}));
   EXPECT_EQ(script[3].raise, scenario.behavior->find_event("go_to"));
   EXPECT_EQ(script[4].fault, InjectedFault::mocap_dropout);
   EXPECT_EQ(script[4].duration, 2.0);
@@ -117,13 +121,10 @@ TEST_F(ScenarioLoader, AnEditMayChangeOneValueOfAParameter) {
       "scenario: 1\nbehavior: walk.yaml\nfor: 20 s\n"
       "script: [{at: 1 s, edit: {goal.y: 30 cm, goal: [1 m, 2 m]}}]\n");
   EXPECT_EQ(diagnostics_.to_string(), "");
-  const auto& edit = scenario.script.at(0).edit;
-  ASSERT_EQ(edit.size(), 2U);
-  EXPECT_EQ(edit[0].parameter, edit[1].parameter);
-  EXPECT_EQ(edit[0].first, 1);
-  EXPECT_EQ(edit[0].values, std::vector<double>{0.3});
-  EXPECT_EQ(edit[1].first, 0);
-  EXPECT_EQ(edit[1].values, (std::vector<double>{1.0, 2.0}));
+  const auto& behavior = *scenario.behavior;
+  const int goal = behavior.parameters[at(behavior.find_parameter("goal"))].slot;
+  EXPECT_EQ(scenario.script.at(0).edit,
+            (std::vector<behaviors::SlotValue>{{goal + 1, 0.3}, {goal, 1.0}, {goal + 1, 2.0}}));
 }
 TEST_F(ScenarioLoader, ExpectationsAreCompiledAgainstTheSignalsOfTheRun) {
   ScenarioDescription scenario = load(kScenario);
