@@ -1,43 +1,13 @@
 // The robot as the tick sees it: sensors, commands, and the interface of every backend.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <string>
 
 #include "core/fault.h"
 #include "core/limits.h"
+#include "hal/sensor_fields.h"
 
 namespace footfall::hal {
-
-// Measured once a tick. Arrays have the order of the robot file; unused entries are 0.
-struct Sensors {
-  std::int64_t time_ns = 0;                                       // backend's clock at sampling
-  std::array<double, core::kMaxJoints> q{};                       // joint position, rad
-  std::array<double, core::kMaxJoints> qd{};                      // joint velocity, rad/s
-  std::array<double, core::kMaxJoints> tau{};                     // joint torque measured, N m
-  std::array<double, 3> gyro{};                                   // rad/s, IMU frame
-  std::array<double, 3> accelerometer{};                          // m/s^2, IMU frame
-  std::array<bool, core::kMaxContacts> contact{};                 // foot switch closed
-  std::array<std::array<double, 3>, core::kMaxContacts> force{};  // N, ground on robot, world
-
-  bool imu_fresh = true;    // new IMU data arrived
-  bool mocap_fresh = true;  // new motion capture data arrived
-
-  bool has_truth = false;                  // a simulator provides the base's true state below
-  std::array<double, 3> p_WB{};            // base origin, m, world
-  std::array<double, 4> q_WB{1, 0, 0, 0};  // base orientation, w x y z
-  std::array<double, 3> v_WB{};            // velocity of the base origin, m/s, world
-  std::array<double, 3> w_WB_B{};          // angular velocity, rad/s, base frame
-
-  bool body_contact = false;   // a body other than a declared contact touches (simulator)
-  bool backend_fault = false;  // the backend raised a warning or reset itself (simulator)
-};
-
-// Written once a tick.
-struct Commands {
-  std::array<double, core::kMaxJoints> tau{};  // joint torque, N m
-};
 
 // A backend. start() may throw std::runtime_error with one clear sentence; the rest may not.
 class Hardware {

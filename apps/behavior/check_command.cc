@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
 #include "apps/suites/sweep_setup.h"
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
+#include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
 #include "lab/suite/files.h"
 #include "model/control_model.h"
@@ -105,7 +105,7 @@ constexpr Kind kKinds[] = {
 void check_file(const std::string& file, const CheckOptions& options,
                 core::Diagnostics& diagnostics) {
   if (file == "-") {
-    const std::string text = read_whole_file(file);
+    const std::string text = core::read_whole_file(file);
     check_loaded(
         behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics),
         diagnostics);

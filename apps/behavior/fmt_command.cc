@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
+#include "core/text/whole_file.h"
 #include "core/yaml_text/format.h"
 
 namespace footfall::apps {
@@ -44,7 +44,7 @@ std::optional<std::string> format_text(const std::string& name, const std::strin
 
 int format_file(const std::string& file, const FmtOptions& options) {
   int exit_code = kGood;
-  const std::string text = read_whole_file(file);
+  const std::string text = core::read_whole_file(file);
   const auto formatted = format_text(file == "-" ? "stdin" : file, text, exit_code);
   if (!formatted) return exit_code;
   if (options.check) {
@@ -55,7 +55,7 @@ int format_file(const std::string& file, const FmtOptions& options) {
   if (options.to_stdout || file == "-") {
     std::fwrite(formatted->data(), 1, formatted->size(), stdout);
   } else if (*formatted != text) {
-    write_whole_file(file, *formatted);
+    core::write_whole_file(file, *formatted);
     fmt::print("{}: formatted\n", file);
   }
   return kGood;

@@ -6,8 +6,9 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
+#include "apps/shared/external_program.h"
 #include "behaviors/explain/diagram.h"
+#include "core/text/whole_file.h"
 
 namespace footfall::apps {
 namespace {
@@ -53,7 +54,7 @@ int graph(const GraphOptions& options) {
     if (options.out.empty() || options.out == "-") {
       std::fwrite(text.data(), 1, text.size(), stdout);
     } else {
-      write_whole_file(options.out, text);
+      core::write_whole_file(options.out, text);
     }
   } catch (const std::runtime_error& error) {
     const bool no_picture = format == "svg";

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
+#include "core/text/whole_file.h"
 #include "core/yaml/value_reader.h"
 #include "core/yaml_text/write.h"
 
@@ -72,7 +72,7 @@ void expect_good_behavior(const std::string& text, const std::string& path) {
 
 void write_behavior(const std::string& text, const fs::path& path) {
   expect_good_behavior(text, path.string());
-  write_whole_file(path.string(), text);
+  core::write_whole_file(path.string(), text);
   fmt::print("{} written; now: footfall check {}\n", path.string(), path.string());
 }
 
@@ -130,7 +130,7 @@ void new_behavior(const NewOptions& options) {
     throw InputError(
         fmt::format("--from {}: expected squat, chart, a behavior of the library or a file", from));
   }
-  std::string text = read_whole_file(source);
+  std::string text = core::read_whole_file(source);
   if (!options.robot.empty()) text = with_value(text, "robot", options.robot);
   write_behavior(text, path);
 }
@@ -144,8 +144,8 @@ void new_robot(const NewOptions& options) {
   const fs::path source = find_data("robots/scaffolds/biped");
   if (source.empty())
     throw std::runtime_error("robots/scaffolds/biped: not found; set FOOTFALL_PATH");
-  std::string robot = read_whole_file((source / "robot.yaml").string());
-  std::string body = read_whole_file((source / "biped.xml").string());
+  std::string robot = core::read_whole_file((source / "robot.yaml").string());
+  std::string body = core::read_whole_file((source / "biped.xml").string());
   robot = with_value(with_value(robot, "name", name), "model", name + ".xml");
   constexpr std::string_view kModel = "model=\"biped\"";
   body.replace(body.find(kModel), kModel.size(), fmt::format("model=\"{}\"", name));
@@ -154,8 +154,8 @@ void new_robot(const NewOptions& options) {
   part += ".part";
   refuse_existing(part);
   fs::create_directories(part);
-  write_whole_file((part / "robot.yaml").string(), robot);
-  write_whole_file((part / (name + ".xml")).string(), body);
+  core::write_whole_file((part / "robot.yaml").string(), robot);
+  core::write_whole_file((part / (name + ".xml")).string(), body);
   fs::rename(part, folder);
   fmt::print("{}/robot.yaml and {}.xml written; now: footfall check {}/robot.yaml\n",
              folder.string(), name, folder.string());

@@ -29,14 +29,14 @@ std::optional<double> read_number(const core::YamlNode& node, const behaviors::P
                    : core::read_quantity(node, info.dimension, diagnostics);
 }
 
-// Converts NAME=VALUE for plan_save(): a list, or one number for all values of NAME.
-std::optional<behaviors::SavedValue> read_setting(const behaviors::Behavior& behavior,
+// NAME=VALUE as what is asked of plan_save(): a list, or one number for all values of NAME.
+std::optional<behaviors::NamedValue> read_setting(const behaviors::Behavior& behavior,
                                                   const std::string& name, const std::string& text,
                                                   core::Diagnostics& diagnostics) {
   const core::YamlNode node = core::load_yaml_text(text, name, diagnostics);
   const behaviors::ParameterPart part = behavior.find_parameter_part(name);
-  behaviors::SavedValue value{name, {}};
-  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() reports the reason
+  behaviors::NamedValue value{name, {}};
+  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() says why it is unknown
   const auto& info = behavior.parameters[static_cast<std::size_t>(part.parameter)];
   const std::size_t size = part.component < 0 ? static_cast<std::size_t>(info.size) : 1;
   const std::vector<core::YamlNode> items =
@@ -60,7 +60,7 @@ int set_values(const SetOptions& options) {
   load.robot = options.robot;
   const auto settings = split_settings(options.settings, diagnostics);
   const std::string path = find_behavior_file(options.file);
-  std::vector<behaviors::SavedValue> values;
+  std::vector<behaviors::NamedValue> values;
   core::Diagnostics problems;
   const auto behavior = behaviors::load_behavior(path, load, problems);
   if (behavior == nullptr) {

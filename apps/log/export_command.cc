@@ -8,7 +8,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
-#include "apps/shared/output_file.h"
+#include "core/text/whole_file.h"
 #include "core/units/units.h"
 #include "core/yaml/glob.h"
 
@@ -103,7 +103,7 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.out.empty()) {
     std::fwrite(text.data(), 1, text.size(), stdout);
   } else {
-    write_whole_file(arguments.out, text);
+    core::write_whole_file(arguments.out, text);
   }
   return kGood;
 }

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "apps/log/report_film.h"
+#include "apps/shared/external_program.h"
 #include "apps/shared/log_argument.h"
-#include "apps/shared/output_file.h"
 #include "core/units/units.h"
 #include "lab/log/reader.h"
 #include "lab/log/window.h"

@@ -9,6 +9,7 @@
 #include "apps/reference/reference_signals.h"
 #include "apps/reference/value_text.h"
 #include "apps/shared/commands.h"
+#include "behaviors/expression/statistics.h"
 #include "behaviors/language/language.h"
 #include "behaviors/load/control/task_types.h"
 #include "core/fault.h"
@@ -148,12 +149,22 @@ std::string words_table(std::span<const WordSpec> words, std::string_view head) 
   return out;
 }
 
+std::string statistics() {
+  std::string out =
+      "\nStatistics of one signal (or of `abs` of it) over a time, in the expectations of a "
+      "scenario:\n\n| statistic | meaning |\n|---|---|\n";
+  for (const behaviors::Statistic& statistic : behaviors::kStatistics) {
+    out += fmt::format("| `{}(SIGNAL)` | {} |\n", statistic.name, statistic.doc);
+  }
+  return out;
+}
+
 std::string expressions() {
   return "\n## Expressions\n\nChecked for dimensions and compiled at load. Names:\n" +
          words_table(behaviors::kExpressionNames, "name") +
          "\nOperators, from the weakest to the strongest:\n" +
          words_table(behaviors::kExpressionOperators, "operator") + "\nFunctions:\n" +
-         words_table(behaviors::kExpressionFunctions, "function");
+         words_table(behaviors::kExpressionFunctions, "function") + statistics();
 }
 
 std::string events() {

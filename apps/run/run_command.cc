@@ -9,6 +9,7 @@
 #include "apps/run/run_reload.h"
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "core/text/whole_file.h"
 #include "lab/run/run.h"
 #include "lab/run/summary.h"
 #include "lab/scenario/loader.h"
@@ -49,10 +50,8 @@ void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& 
 
 // The parameter that is the goal of the first planner; requires lab::has_goal.
 const behaviors::ParameterInfo& goal_parameter(const behaviors::Behavior& behavior) {
-  const int slot = behavior.planners.front().goal_slot;
-  return *std::ranges::find_if(behavior.parameters, [slot](const auto& info) {
-    return slot >= info.slot && slot < info.slot + info.size;
-  });
+  const int index = behavior.parameter_of_slot(behavior.planners.front().goal_slot);
+  return behavior.parameters[static_cast<std::size_t>(index)];
 }
 
 // The options move the goal like an operator does, so it must be live.
@@ -131,8 +130,9 @@ int run_behavior(const RunOptions& options) {
   if (log) {
     log->close();
     if (live.reloads) live.reloads->close();
-    write_file(options.log + "/summary.json", lab::summary_json(id, result, true).dump(2) + "\n");
-    write_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
+    core::write_whole_file(options.log + "/summary.json",
+                           lab::summary_json(id, result, true).dump(2) + "\n");
+    core::write_whole_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
   }
   if (!options.quiet)
     std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);

@@ -11,6 +11,7 @@
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
 #include "behaviors/check/physics/check.h"
+#include "core/text/whole_file.h"
 #include "hal/sensors/faults.h"
 #include "lab/judge/run.h"
 #include "lab/scenario/loader.h"
@@ -69,10 +70,10 @@ lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors) {
 void write_results(const RunOptions& options, const lab::ScenarioDescription& scenario,
                    const lab::RunIdentity& id, const lab::ScenarioRun& done) {
   const auto figures = lab::summary_json(id, done.run, true);
-  write_file(options.log + "/summary.json", figures.dump(2) + "\n");
-  write_file(options.log + "/timing.json", lab::timing_json(done.run).dump(2) + "\n");
-  write_file(options.log + "/result.json",
-             lab::outcome_json(scenario, done.outcome, figures).dump(2) + "\n");
+  core::write_whole_file(options.log + "/summary.json", figures.dump(2) + "\n");
+  core::write_whole_file(options.log + "/timing.json", lab::timing_json(done.run).dump(2) + "\n");
+  core::write_whole_file(options.log + "/result.json",
+                         lab::outcome_json(scenario, done.outcome, figures).dump(2) + "\n");
   if (scenario.golden) {
     lab::write_golden(options.log + "/golden.csv", *scenario.golden, done.trace);
   }

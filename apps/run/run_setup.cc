@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "apps/shared/commands.h"
 #include "core/realtime/allocation_count.h"
@@ -152,16 +151,6 @@ std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::
     std::fflush(options.json ? stderr : stdout);
   }
   return link;
-}
-
-void write_file(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw std::runtime_error("cannot write '" + temporary + "'");
-  }
-  fs::rename(temporary, path);
 }
 
 namespace {

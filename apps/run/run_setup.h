@@ -47,8 +47,6 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,
                                             const sim::WorldDescription& world,
                                             lab::RunIdentity& id);
-// Writes a small text file atomically.
-void write_file(const std::string& path, const std::string& text);
 
 // `footfall run` of a scenario file; returns the exit code. Throws InputError.
 int run_scenario_file(RunOptions options);

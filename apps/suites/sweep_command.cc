@@ -10,10 +10,10 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
 #include "apps/suites/sweep_options.h"
 #include "apps/suites/sweep_setup.h"
 #include "apps/suites/sweep_slurm.h"
+#include "core/text/whole_file.h"
 #include "core/yaml_text/write.h"
 #include "lab/process/pool.h"
 #include "lab/run/version.h"
@@ -103,7 +103,7 @@ void show_progress(const lab::SweepProgress& p) {
 
 void write_report(const std::string& folder, const lab::SweepTable& table) {
   const std::string path = folder + "/report.html";
-  write_whole_file(path, lab::sweep_report_html(table));
+  core::write_whole_file(path, lab::sweep_report_html(table));
   fmt::print("  report       {}\n", path);
 }
 
@@ -160,7 +160,7 @@ int write_slurm(const SweepCommandOptions& options, const Loaded& loaded, const 
                options.slurm_template};
   if (job.sweep_file.empty()) {
     job.sweep_file = out + "/sweep.yaml";
-    write_whole_file(job.sweep_file, core::to_yaml(loaded.tree));
+    core::write_whole_file(job.sweep_file, core::to_yaml(loaded.tree));
   }
   fmt::print("bash {}\n", write_slurm_script(job));
   return kGood;
@@ -204,7 +204,7 @@ int sweep(const SweepCommandOptions& options) {
   if (!options.report.empty() || !options.csv.empty()) {
     if (!options.report.empty()) write_report(options.report, read_folder(options.report));
     if (options.csv.empty()) return kGood;
-    write_whole_file(options.csv + "/sweep.csv", lab::sweep_csv(read_folder(options.csv)));
+    core::write_whole_file(options.csv + "/sweep.csv", lab::sweep_csv(read_folder(options.csv)));
     fmt::print("  table        {}/sweep.csv\n", options.csv);
     return kGood;
   }
@@ -213,7 +213,7 @@ int sweep(const SweepCommandOptions& options) {
       options.out.empty() ? "out/sweep/" + loaded.prepared.sweep.name : options.out;
   if (!options.save.empty()) {
     if (!loaded.file.empty()) throw InputError("--save: error: it is a sweep file already");
-    write_whole_file(options.save, core::to_yaml(loaded.tree));
+    core::write_whole_file(options.save, core::to_yaml(loaded.tree));
     return kGood;
   }
   if (options.list) return list_runs(loaded.prepared, out);

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
+#include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
 #include "lab/sweep/plan/check.h"
 #include "lab/sweep/plan/derived_files.h"
@@ -66,7 +66,7 @@ void check_sweep_file(const std::string& path, core::Diagnostics& diagnostics) {
 
 std::string digest_of_files(const std::vector<std::string>& paths) {
   std::string all;
-  for (const std::string& path : paths) all += lab::digest(read_whole_file(path));
+  for (const std::string& path : paths) all += lab::digest(core::read_whole_file(path));
   return lab::digest(all);
 }
 

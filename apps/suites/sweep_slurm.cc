@@ -5,7 +5,7 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
+#include "core/text/whole_file.h"
 #include "lab/process/pool.h"
 #include "lab/report/page.h"
 
@@ -37,7 +37,7 @@ std::string job_name(std::string name) {
 std::string write_slurm_script(const SlurmJob& job) {
   std::string text;
   try {
-    text = read_whole_file(find_template(job.template_path));
+    text = core::read_whole_file(find_template(job.template_path));
   } catch (const std::runtime_error& error) {
     throw InputError(std::string("--template: error: ") + error.what());
   }
@@ -58,7 +58,7 @@ std::string write_slurm_script(const SlurmJob& job) {
              {"jobs", std::to_string(job.jobs)},
              {"command", lab::shell_line(command)},
              {"merge", lab::shell_line({job.program, "sweep", "--merge", out})}});
-  write_whole_file(path, script);
+  core::write_whole_file(path, script);
   return path;
 }
 

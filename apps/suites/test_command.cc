@@ -11,7 +11,7 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
-#include "apps/shared/output_file.h"
+#include "core/text/whole_file.h"
 #include "core/units/units.h"
 #include "lab/process/pool.h"
 #include "lab/suite/bless.h"
@@ -75,7 +75,7 @@ std::string session_file(const TestOptions& options) { return options.out + "/se
 std::vector<std::string> failed_before(const TestOptions& options) {
   std::string text;
   try {
-    text = read_whole_file(session_file(options));
+    text = core::read_whole_file(session_file(options));
   } catch (const std::runtime_error&) {
     throw InputError(session_file(options) + ": error: no session to take failures from");
   }
@@ -208,11 +208,12 @@ void write_results(const TestOptions& options, const Suite& suite) {
     return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   };
   const std::string session = text(lab::suite_json(suite));
-  write_whole_file(session_file(options), session);
-  if (!options.junit.empty()) write_whole_file(options.junit, lab::junit_xml(suite));
-  if (!options.json.empty() && options.json != "-") write_whole_file(options.json, session);
+  core::write_whole_file(session_file(options), session);
+  if (!options.junit.empty()) core::write_whole_file(options.junit, lab::junit_xml(suite));
+  if (!options.json.empty() && options.json != "-") core::write_whole_file(options.json, session);
   if (options.json == "-") std::fputs(session.c_str(), stdout);
-  if (!options.coverage.empty()) write_whole_file(options.coverage, text(suite.coverage.to_json()));
+  if (!options.coverage.empty())
+    core::write_whole_file(options.coverage, text(suite.coverage.to_json()));
 }
 
 lab::SuiteSettings settings_of(const TestOptions& options) {

@@ -39,7 +39,7 @@ TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
         "{}: no such file here: save on the host that the engine runs on, or mount it", path));
     return save;
   }
-  std::vector<behaviors::SavedValue> values;
+  std::vector<behaviors::NamedValue> values;
   for (const int index : parameters) {
     const TuneParameter& parameter = model.parameters[at(index)];
     const auto target = target_of(model, parameter);

@@ -24,6 +24,13 @@ int Behavior::find_parameter(std::string_view parameter) const {
   return -1;
 }
 
+int Behavior::parameter_of_slot(int slot) const {
+  const auto owner = std::ranges::find_if(parameters, [slot](const ParameterInfo& info) {
+    return slot >= info.slot && slot < info.slot + info.size;
+  });
+  return owner == parameters.end() ? -1 : static_cast<int>(owner - parameters.begin());
+}
+
 ParameterPart Behavior::find_parameter_part(std::string_view text) const {
   const int whole = find_parameter(text);
   const std::size_t dot = text.rfind('.');

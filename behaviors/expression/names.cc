@@ -5,6 +5,7 @@
 #include <array>
 
 #include "behaviors/expression/parser.h"
+#include "behaviors/expression/statistics.h"
 #include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
@@ -54,7 +55,7 @@ Operand ExpressionParser::parse_primary() {
 
 Operand ExpressionParser::parse_call(const Token& name) {
   if (name.text == "in") return parse_in();
-  if (const auto reduction = parse_reduction(name)) return *reduction;
+  if (const auto statistic = parse_statistic(name)) return *statistic;
   for (const FunctionInfo& function : kFunctions) {
     if (function.name == name.text) return parse_function(name, function);
   }
@@ -64,12 +65,12 @@ Operand ExpressionParser::parse_call(const Token& name) {
        fmt::format("unknown function '{}'{}", name.text, core::did_you_mean(name.text, names)));
 }
 
-// `rms(task.height.error)`, `max(abs(base.rpy.pitch))`: a statistic of a single signal or of its
-// magnitude ("max abs" for find_reduction).
-std::optional<Operand> ExpressionParser::parse_reduction(const Token& name) {
-  constexpr std::array<std::string_view, 4> kReductions = {"max", "mean", "rms", "count"};
-  if (!scope_.find_reduction || at_ + 2 >= tokens_.size() || scope_.signals == nullptr ||
-      std::find(kReductions.begin(), kReductions.end(), name.text) == kReductions.end()) {
+// `rms(task.height.error)`, `max(abs(base.rpy.pitch))`: a statistic of a lone signal or of its
+// magnitude.
+std::optional<Operand> ExpressionParser::parse_statistic(const Token& name) {
+  const Statistic* statistic = find_statistic(name.text);
+  if (!scope_.find_statistic || at_ + 2 >= tokens_.size() || scope_.signals == nullptr ||
+      statistic == nullptr) {
     return std::nullopt;
   }
   const auto text = [this](std::size_t ahead) {
@@ -80,11 +81,11 @@ std::optional<Operand> ExpressionParser::parse_reduction(const Token& name) {
   const Token& of = tokens_[at_ + (magnitude ? 3U : 1U)];
   const int signal = of.kind == Token::Kind::name ? scope_.signals->find(of.text) : -1;
   if (signal < 0 || (!magnitude && text(2) != ")")) return std::nullopt;
-  const int index = scope_.find_reduction(name.text + (magnitude ? " abs" : ""), signal);
+  const int index = scope_.find_statistic(*statistic, magnitude, signal);
   if (index < 0) fail(name, "unknown-function", fmt::format("no {}() of this signal", name.text));
   at_ += magnitude ? 6 : 3;
   emit(Op::signal, index);
-  if (name.text == "count") return Operand{};
+  if (statistic->counts) return Operand{};
   return Operand{scope_.signals->info(signal).dimension, false, false, 0.0};
 }
 

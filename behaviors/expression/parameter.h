@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/units/units.h"
 
@@ -34,6 +35,21 @@ inline int component_of(std::string_view name, int size) {
 struct ParameterPart {
   int parameter = -1;  // into Behavior::parameters
   int component = -1;  // -1: all
+};
+
+// A new value in the flat array, SI.
+struct SlotValue {
+  int slot = 0;
+  double value = 0.0;
+
+  bool operator==(const SlotValue&) const = default;
+};
+
+// New values of a parameter or gain by its name, or of one of its components (`goal.y`), SI: where
+// the array is not known, or may be another one.
+struct NamedValue {
+  std::string name;
+  std::vector<double> values;  // as many as it has
 };
 
 }  // namespace footfall::behaviors

@@ -69,7 +69,7 @@ class ExpressionParser {
   Operand parse_primary();
   Operand parse_call(const Token& name);
   Operand parse_in();
-  std::optional<Operand> parse_reduction(const Token& name);
+  std::optional<Operand> parse_statistic(const Token& name);
   Operand parse_function(const Token& name, const FunctionInfo& function);
   Operand result_of(const FunctionInfo& function, const Token& name, Operand argument);
   Operand parse_parameter(const Token& token);

@@ -55,11 +55,11 @@ std::string reason_against(const ParameterInfo& info, const std::vector<double>&
   return "";
 }
 
-// Collects the parameters with new values from requests by name.
-void collect_wanted(SavePlanner& planner, const std::vector<SavedValue>& values) {
+// The parameters that get other values, from what is asked for by name.
+void collect_wanted(SavePlanner& planner, const std::vector<NamedValue>& values) {
   const Behavior& behavior = planner.source.behavior;
-  std::map<int, std::vector<std::optional<double>>> asked;  // by parameter and component
-  for (const SavedValue& value : values) {
+  std::map<int, std::vector<std::optional<double>>> asked;  // by parameter, by component
+  for (const NamedValue& value : values) {
     const ParameterPart part = behavior.find_parameter_part(value.name);
     if (part.parameter < 0) {
       planner.refuse({}, value.name, unknown_reason(planner.source, value.name));
@@ -168,7 +168,7 @@ void make_plan(SavePlanner& planner, const std::string& path, const std::string&
 }  // namespace
 
 SavePlan plan_save(const std::string& path, const LoadOptions& options,
-                   const std::vector<SavedValue>& values, const std::string& overlay,
+                   const std::vector<NamedValue>& values, const std::string& overlay,
                    core::Diagnostics& diagnostics) {
   SavePlan plan;
   LoadOptions own = options;

@@ -11,13 +11,7 @@
 
 namespace footfall::behaviors {
 
-// New values of a parameter or gain, or of one of its components (`goal.y`).
-struct SavedValue {
-  std::string name;            // name in Behavior::parameters
-  std::vector<double> values;  // SI, all its values
-};
-
-// One changed place, for display.
+// One place that changes, for people.
 struct SavedPlace {
   std::string name;                // parameter or gain
   std::string file;                // file that contains its value
@@ -47,7 +41,7 @@ struct SavePlan {
 // other value of the file (or overlay) unchanged. Problems of the files are added to `diagnostics`;
 // the plan is then refused, too.
 SavePlan plan_save(const std::string& path, const LoadOptions& options,
-                   const std::vector<SavedValue>& values, const std::string& overlay,
+                   const std::vector<NamedValue>& values, const std::string& overlay,
                    core::Diagnostics& diagnostics);
 
 // The plan in the format of `diff -u`, file by file.

@@ -19,6 +19,8 @@
 #include <string_view>
 #include <vector>
 
+#include "behaviors/expression/parameter.h"
+
 namespace footfall::behaviors {
 
 struct Behavior;
@@ -45,15 +47,10 @@ struct ScriptView {
   double time = 0.0;                     // s
 };
 
-struct ScriptEdit {
-  int slot = 0;  // first slot in the parameter array
-  double value = 0.0;
-};
-
-// Result of a call; messages are texts for the log, errors begin with `script: `.
+// What a call wants; messages are texts for the log, `script: ` before an error.
 struct ScriptAnswer {
   std::vector<int> events;
-  std::vector<ScriptEdit> edits;
+  std::vector<SlotValue> edits;
   std::vector<std::string> messages;
 };
 

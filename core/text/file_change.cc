@@ -8,43 +8,19 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
-#include "core/text/write_all.h"
+#include "core/text/file_descriptor.h"
+#include "core/text/whole_file.h"
 
 namespace footfall::core {
 namespace {
 
 std::string reason(const char* what) { return fmt::format("{}: {}", what, std::strerror(errno)); }
-
-// A file descriptor, closed by the destructor.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return number_; }
-  bool good() const { return number_ >= 0; }
-
- private:
-  int number_;
-};
-
-// Target of a symbolic link; it need not exist yet.
-std::string real_path(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::path real =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
-  return error || real.empty() ? path : real.string();
-}
 
 std::optional<std::string> read_all(int file) {
   std::string text;
@@ -61,8 +37,9 @@ std::optional<std::string> read_all(int file) {
 // A staged change: the complete new content in a temporary file beside the target.
 struct Staged {
   const FileChange* change = nullptr;
-  std::string target, part;
-  bool renamed = false;
+  std::string target;
+  std::unique_ptr<StagedFile> file;
+  bool in_place = false;
 };
 
 // Why the file no longer holds the content that the change was made for; empty if it does. The file
@@ -70,65 +47,55 @@ struct Staged {
 // sees the text of the first. The file may be replaced while waiting for the lock, therefore the
 // text is read again by name.
 std::string check_target(const FileChange& change, const std::string& target,
-                         std::vector<std::unique_ptr<Descriptor>>& locks) {
+                         std::vector<std::unique_ptr<FileDescriptor>>& locks) {
   if (change.is_new) {
     struct stat there {};
     return ::lstat(target.c_str(), &there) == 0 ? "there is such a file by now" : "";
   }
-  locks.push_back(std::make_unique<Descriptor>(::open(target.c_str(), O_RDONLY | O_CLOEXEC)));
-  if (!locks.back()->good()) return reason("cannot read");
+  locks.push_back(std::make_unique<FileDescriptor>(::open(target.c_str(), O_RDONLY | O_CLOEXEC)));
+  if (!locks.back()->open()) return reason("cannot read");
   if (::flock(locks.back()->get(), LOCK_EX | LOCK_NB) != 0) return "somebody else is saving it";
-  const Descriptor now(::open(target.c_str(), O_RDONLY | O_CLOEXEC));
-  const auto text = now.good() ? read_all(now.get()) : std::nullopt;
+  const FileDescriptor now(::open(target.c_str(), O_RDONLY | O_CLOEXEC));
+  const auto text = now.open() ? read_all(now.get()) : std::nullopt;
   if (!text) return reason("cannot read");
   if (*text != change.before) return "it has changed meanwhile; nothing was written";
   if (::access(target.c_str(), W_OK) != 0) return reason("cannot write");
   return "";
 }
 
-// Writes the new content beside the target, with the target's mode and owner.
+// Empty, or why it cannot be written.
 std::string stage(Staged& staged) {
-  const std::string name = fmt::format("{}.{}.part", staged.target, ::getpid());
-  const Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!file.good()) return reason("cannot write");
-  staged.part = name;
-  if (!write_all(file.get(), staged.change->after)) return reason("cannot write");
-  struct stat old {};
-  if (!staged.change->is_new && ::stat(staged.target.c_str(), &old) == 0) {
-    const int owned = ::fchown(file.get(), old.st_uid, old.st_gid);
-    static_cast<void>(owned);  // needs privileges; else the writer owns the file
-    if (::fchmod(file.get(), old.st_mode & 07777) != 0) return reason("cannot keep its mode");
+  try {
+    staged.file = std::make_unique<StagedFile>(staged.target, staged.change->after);
+  } catch (const std::runtime_error& error) {
+    return error.what();
   }
-  return ::fsync(file.get()) == 0 ? "" : reason("cannot write");
+  return "";
 }
 
 std::string put_in_place(Staged& staged) {
-  // A new file must not replace one that was created in the meantime.
-  const bool done = staged.change->is_new
-                        ? ::link(staged.part.c_str(), staged.target.c_str()) == 0
-                        : std::rename(staged.part.c_str(), staged.target.c_str()) == 0;
-  if (!done) return reason("cannot write");
-  if (staged.change->is_new) ::unlink(staged.part.c_str());
-  staged.renamed = true;
-  const std::string folder = std::filesystem::path(staged.target).parent_path().string();
-  const Descriptor open_folder(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (open_folder.good()) ::fsync(open_folder.get());  // else the name reaches the disk later
+  try {
+    // A new file must not take the place of one that came meanwhile.
+    staged.change->is_new ? staged.file->create() : staged.file->replace();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  staged.in_place = true;
   return "";
 }
 
 // Restores the old content of the files already renamed, after a later rename failed.
 void take_back(std::vector<Staged>& all) {
   for (Staged& staged : all) {
-    if (!staged.renamed) continue;
+    if (!staged.in_place) continue;
     if (staged.change->is_new) {
       ::unlink(staged.target.c_str());
       continue;
     }
     FileChange back = *staged.change;
     std::swap(back.before, back.after);
-    Staged again{&back, staged.target, {}, false};
+    Staged again{&back, staged.target, nullptr, false};
     if (stage(again).empty()) put_in_place(again);
-    if (!again.renamed && !again.part.empty()) ::unlink(again.part.c_str());
   }
 }
 
@@ -137,12 +104,13 @@ void take_back(std::vector<Staged>& all) {
 std::vector<std::string> write_changes(const std::vector<FileChange>& changes) {
   std::vector<std::string> reasons;
   std::vector<Staged> all;
-  std::vector<std::unique_ptr<Descriptor>> locks;
+  std::vector<std::unique_ptr<FileDescriptor>> locks;
   const auto note = [&](const Staged& staged, const std::string& problem) {
     if (!problem.empty()) reasons.push_back(staged.change->path + ": " + problem);
   };
-  for (const FileChange& change : changes)
-    all.push_back({&change, real_path(change.path), {}, false});
+  for (const FileChange& change : changes) {
+    all.push_back({&change, real_path(change.path), nullptr, false});
+  }
   for (const Staged& staged : all) note(staged, check_target(*staged.change, staged.target, locks));
   for (Staged& staged : all) {
     if (reasons.empty()) note(staged, stage(staged));
@@ -152,9 +120,6 @@ std::vector<std::string> write_changes(const std::vector<FileChange>& changes) {
   }
   if (reasons.empty()) return reasons;
   take_back(all);
-  for (const Staged& staged : all) {
-    if (!staged.renamed && !staged.part.empty()) ::unlink(staged.part.c_str());
-  }
   return reasons;
 }
 

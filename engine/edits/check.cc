@@ -47,34 +47,25 @@ void check_liveness(const ParameterInfo& info, EditSource source,
                                   : info.name + ": not live; give it a range and 'live: true'");
 }
 
-void check_edit(const Behavior& behavior, const EditValue& edit, EditSource source,
-                std::vector<int>& slots, std::vector<std::string>& reasons) {
-  const auto count = static_cast<int>(behavior.parameters.size());
-  if (edit.parameter < 0 || edit.parameter >= count) {
-    reasons.push_back(fmt::format("no parameter {}: the behavior has {}", edit.parameter, count));
-    return;
-  }
-  const ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(edit.parameter)];
-  check_liveness(info, source, reasons);
-  if (edit.component >= info.size || edit.component < -1) {
-    reasons.push_back(fmt::format("{}: no component {}, it has {} value{}", info.name,
-                                  edit.component, info.size, info.size == 1 ? "" : "s"));
-    return;
-  }
-  const int wanted = edit.component < 0 ? info.size : 1;
-  if (static_cast<int>(edit.values.size()) != wanted) {
-    reasons.push_back(fmt::format("{}: expected {} value{}, got {}", info.name, wanted,
-                                  wanted == 1 ? "" : "s", edit.values.size()));
-    return;
-  }
-  for (int k = 0; k < wanted; ++k) {
-    const int component = std::max(0, edit.component) + k;
-    check_value(info, component, edit.values[static_cast<std::size_t>(k)], reasons);
-    const int slot = info.slot + component;
-    if (std::ranges::find(slots, slot) != slots.end()) {
-      reasons.push_back(info.name + ": given twice");
+// The values of a batch, slot by slot; a reason against a parameter as a whole is given once.
+void check_values(const Behavior& behavior, const EditBatch& batch,
+                  std::vector<std::string>& reasons) {
+  int last = -1;
+  std::vector<std::uint8_t> given(behavior.values.size());
+  for (const auto& [slot, value] : batch.values) {
+    const int parameter = behavior.parameter_of_slot(slot);
+    if (parameter < 0) {
+      reasons.push_back(
+          fmt::format("no value {}: the behavior has {}", slot, behavior.values.size()));
+      continue;
     }
-    slots.push_back(slot);
+    const ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(parameter)];
+    if (parameter != last) check_liveness(info, batch.source, reasons);
+    last = parameter;
+    check_value(info, slot - info.slot, value, reasons);
+    std::uint8_t& before = given[static_cast<std::size_t>(slot)];
+    if (before != 0) reasons.push_back(info.name + ": given twice");
+    before = 1;
   }
 }
 
@@ -97,13 +88,29 @@ void check_events(const Behavior& behavior, const EditBatch& batch,
 
 }  // namespace
 
+void add_values(const Behavior& behavior, behaviors::ParameterPart part,
+                std::span<const double> values, std::vector<behaviors::SlotValue>& to,
+                std::vector<std::string>& reasons) {
+  const ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(part.parameter)];
+  if (part.component >= info.size || part.component < -1) {
+    reasons.push_back(fmt::format("{}: no component {}, it has {} value{}", info.name,
+                                  part.component, info.size, info.size == 1 ? "" : "s"));
+    return;
+  }
+  const int wanted = part.component < 0 ? info.size : 1;
+  if (std::ssize(values) != wanted) {
+    reasons.push_back(fmt::format("{}: expected {} value{}, got {}", info.name, wanted,
+                                  wanted == 1 ? "" : "s", values.size()));
+    return;
+  }
+  int slot = info.slot + std::max(0, part.component);
+  for (const double value : values) to.push_back({slot++, value});
+}
+
 std::vector<std::string> reasons_against(const Behavior& behavior, const EditBatch& batch,
                                          std::uint64_t revision) {
   std::vector<std::string> reasons;
-  std::vector<int> slots;
-  for (const EditValue& edit : batch.values) {
-    check_edit(behavior, edit, batch.source, slots, reasons);
-  }
+  check_values(behavior, batch, reasons);
   check_events(behavior, batch, reasons);
   if (batch.values.empty() && batch.events.empty()) {
     reasons.emplace_back("nothing is changed or raised");

@@ -15,12 +15,8 @@ EditOrder empty_order(const behaviors::Behavior& behavior) {
 void fill(EditOrder& order, const behaviors::Behavior& behavior, const EditBatch& batch) {
   order.source = batch.source;
   order.ramp_ticks = behaviors::periods_of(ramp_time(behavior, batch), behavior.rate_mhz);
-  order.value_count = 0;
-  for (const EditValue& edit : batch.values) {
-    int slot = behavior.parameters[static_cast<std::size_t>(edit.parameter)].slot;
-    slot += std::max(0, edit.component);
-    for (const double value : edit.values) order.values[order.value_count++] = {slot++, value};
-  }
+  order.value_count = batch.values.size();
+  std::ranges::copy(batch.values, order.values.begin());
   order.event_count = batch.events.size();
   std::ranges::copy(batch.events, order.events.begin());
   order.expects_revision = batch.revision.has_value();
@@ -83,8 +79,9 @@ bool EditEntrance::resubmit(const EditOrder& logged) {
   const auto events = static_cast<int>(behavior_.events.size());
   const bool fits =
       logged.ramp_ticks >= 0 && logged.value_count <= behavior_.values.size() &&
-      std::ranges::all_of(logged.new_values(),
-                          [&](const SlotValue& v) { return v.slot >= 0 && v.slot < slots; }) &&
+      std::ranges::all_of(
+          logged.new_values(),
+          [&](const behaviors::SlotValue& v) { return v.slot >= 0 && v.slot < slots; }) &&
       std::ranges::all_of(logged.new_events(), [&](int e) { return e >= 0 && e < events; });
   EditOrder* order = free_order();
   if (!fits || order == nullptr) return false;
@@ -171,7 +168,7 @@ void EditDoor::write(const EditOrder& order, std::int64_t tick, std::span<double
   const bool smooth = is_smooth(order.source);
   moved_ |= smooth && order.value_count > 0;
   for (std::size_t i = 0; i < order.value_count; ++i) {
-    const SlotValue& edit = order.values[i];
+    const behaviors::SlotValue& edit = order.values[i];
     const auto slot = static_cast<std::size_t>(edit.slot);
     const bool was_moving = ramps_[slot].ticks > 0;
     former[i] = was_moving ? ramps_[slot].to : values[slot];

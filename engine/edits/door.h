@@ -34,22 +34,15 @@ enum class EditSource : std::uint8_t {
 };
 const char* edit_source_name(EditSource source);
 
-// New values of a parameter or gain.
-struct EditValue {
-  int parameter = -1;          // into Behavior::parameters
-  int component = -1;          // one of its components; -1: all
-  std::vector<double> values;  // SI, one for each of these components
-};
-
 struct EditBatch {
   std::uint64_t id = 0;  // chosen by the sender; 0: chosen by the door
   EditSource source = EditSource::live;
-  std::vector<EditValue> values;
-  double over = 0.0;                      // s, duration of a linear ramp of the values
-  std::vector<int> events;                // into Behavior::events, raised in the same tick
-  std::optional<std::uint64_t> revision;  // refused unless this many were applied before
-  std::string who;                        // for the log; printable, truncated to kMaxWho bytes
-  std::string note;                       // same, kMaxNote bytes: `undo`
+  std::vector<behaviors::SlotValue> values;  // each slot at most once
+  double over = 0.0;                         // s: the values move linearly, tick by tick
+  std::vector<int> events;                // into Behavior::events, raised in the tick that applies
+  std::optional<std::uint64_t> revision;  // refused unless this many batches were applied before
+  std::string who;                        // for the log; printable, cut at kMaxWho bytes
+  std::string note;                       // likewise, kMaxNote bytes: `undo`
 };
 
 // Immediate result of submit(): accepted, or all reasons against it.
@@ -71,12 +64,7 @@ struct EditAnswer {
   std::size_t value_count = 0;
 };
 
-struct SlotValue {
-  int slot = 0;  // index in Machine::parameters()
-  double value = 0.0;
-};
-
-inline constexpr std::size_t kMaxEditEvents = 16;  // limit per batch
+inline constexpr std::size_t kMaxEditEvents = 16;  // of one batch
 inline constexpr std::size_t kMaxWho = 48, kMaxNote = 160;
 
 // A short text of fixed capacity, for queues.
@@ -103,8 +91,8 @@ class FixedText {
 struct EditOrder {
   std::uint64_t id = 0;
   EditSource source = EditSource::live;
-  std::int64_t ramp_ticks = 0;    // 0: at once
-  std::vector<SlotValue> values;  // capacity for every slot; the first value_count are valid
+  std::int64_t ramp_ticks = 0;               // 0: at once
+  std::vector<behaviors::SlotValue> values;  // room for every slot; the first value_count count
   std::size_t value_count = 0;
   std::array<int, kMaxEditEvents> events{};
   std::size_t event_count = 0;
@@ -116,7 +104,9 @@ struct EditOrder {
   EditOutcome outcome = EditOutcome::applied;
   std::uint64_t revision = 0;
 
-  std::span<const SlotValue> new_values() const noexcept { return {values.data(), value_count}; }
+  std::span<const behaviors::SlotValue> new_values() const noexcept {
+    return {values.data(), value_count};
+  }
   std::span<const int> new_events() const noexcept { return {events.data(), event_count}; }
 };
 
@@ -230,8 +220,13 @@ class EditDoor {
   bool moved_ = false;
 };
 
-// All reasons against a batch, naming parameter, value, unit and range; `revision`: the current
-// one.
+// Adds new values of a parameter, of all its slots or (component >= 0) of one. A wrong component or
+// number of values adds a reason instead.
+void add_values(const behaviors::Behavior& behavior, behaviors::ParameterPart part,
+                std::span<const double> values, std::vector<behaviors::SlotValue>& to,
+                std::vector<std::string>& reasons);
+
+// Every reason against a batch, naming parameter, value, unit and range; `revision`: in force.
 std::vector<std::string> reasons_against(const behaviors::Behavior& behavior,
                                          const EditBatch& batch, std::uint64_t revision);
 

@@ -5,12 +5,7 @@
 #include <sodium.h>
 
 #include <algorithm>
-#include <footfall_lcm/answer_t.hpp>
-#include <footfall_lcm/catalogue_t.hpp>
-#include <footfall_lcm/hello_t.hpp>
-#include <footfall_lcm/request_t.hpp>
-#include <footfall_lcm/telemetry_t.hpp>
-#include <footfall_lcm/values_t.hpp>
+#include <footfall_lcm/layouts.hpp>
 #include <string_view>
 
 #include "core/text/printable.h"
@@ -22,35 +17,15 @@ using namespace footfall_lcm;
 
 constexpr std::size_t kMacBytes = 32;
 constexpr std::size_t kFingerprintBytes = 8;
-constexpr std::int32_t kLongestName = 128;  // bytes, for names sent by clients
 static_assert(kMacBytes == crypto_auth_BYTES && std::tuple_size_v<LiveKey> == crypto_auth_KEYBYTES);
 
-// The byte layout behind the fingerprint, as in the type's .lcm file:
-//   1 4 8    a number of so many bytes
-//   s n      a text; a name
-//   c {...}  a count, and the group that is repeated so many times (groups may share a count)
-//   m        the mac
-struct Layout {
-  std::string_view fields;
-  std::size_t largest = 0;  // maximum packet size, bytes
-};
-constexpr Layout layout_of(const hello_t&) { return {"8", 64}; }
-constexpr Layout layout_of(const request_t&) { return {"8881n88c{n4c{8}}c{n}m", 60'000}; }
-constexpr Layout layout_of(const answer_t&) { return {"888s188sc{s}m", 200'000}; }
-constexpr Layout layout_of(const catalogue_t&) {
-  return {"888sss81c{s44s1881s}c{8}c{s}{s}c{s}c{s}c{s}c{s}{s}c{s}m", 4'000'000};
-}
-constexpr Layout layout_of(const values_t&) { return {"888844c{8}{8}m", 1'000'000}; }
-constexpr Layout layout_of(const telemetry_t&) {
-  return {"8888818c{4}c{488}c{888}c{8}44c{4}", 1'000'000};
-}
+bool is_signed(std::string_view layout) { return layout.ends_with('m'); }
 
-bool is_signed(const Layout& layout) { return layout.fields.ends_with('m'); }
-
-// Follows a layout through the bytes of a packet.
+// Follows a layout (engine/lcm/message_layouts.py) through the bytes of a packet.
 class Walk {
  public:
-  explicit Walk(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
+  Walk(std::span<const std::uint8_t> bytes, std::int32_t longest_text)
+      : rest_(bytes), longest_text_(longest_text) {}
 
   bool at_end() const { return rest_.empty(); }
 
@@ -64,7 +39,7 @@ class Walk {
           good = text(static_cast<std::int32_t>(std::min<std::size_t>(rest_.size(), INT32_MAX)));
           break;
         case 'n':
-          good = text(kLongestName);
+          good = text(longest_text_);
           break;
         case 'm':
           good = skip(kMacBytes);
@@ -123,6 +98,7 @@ class Walk {
   }
 
   std::span<const std::uint8_t> rest_;
+  std::int32_t longest_text_;
 };
 
 bool has_fingerprint(std::span<const std::uint8_t> packet, std::int64_t fingerprint) {
@@ -139,40 +115,6 @@ bool authentic(std::span<const std::uint8_t> packet, const LiveKey& key) {
   return crypto_auth_verify(packet.data() + size, packet.data(), size, key.data()) == 0;
 }
 
-// Counts are taken from the lists; lists that share a count must have equal length.
-std::int32_t count_of(std::size_t size) { return static_cast<std::int32_t>(size); }
-void settle(hello_t&) {}
-void settle(request_t& m) {
-  for (change_t& change : m.changes) change.count = count_of(change.values.size());
-  m.change_count = count_of(m.changes.size());
-  m.event_count = count_of(m.events.size());
-}
-void settle(answer_t& m) { m.reason_count = count_of(m.reasons.size()); }
-void settle(catalogue_t& m) {
-  m.parameter_count = count_of(m.parameters.size());
-  m.value_count = count_of(m.values.size());
-  m.event_count = count_of(m.events.size());
-  m.event_docs.resize(m.events.size());
-  m.state_count = count_of(m.states.size());
-  m.task_count = count_of(m.tasks.size());
-  m.foot_count = count_of(m.feet.size());
-  m.signal_count = count_of(m.signals.size());
-  m.signal_units.resize(m.signals.size());
-  m.fault_count = count_of(m.faults.size());
-}
-void settle(values_t& m) {
-  m.count = count_of(m.now.size());
-  m.target.resize(m.now.size());
-}
-void settle(telemetry_t& m) {
-  m.active_count = count_of(m.active.size());
-  m.task_count = count_of(m.tasks.size());
-  for (std::vector<double>& force : m.forces) force.resize(3);
-  m.foot_count = count_of(m.forces.size());
-  m.fault_count = count_of(m.faults.size());
-  m.signal_count = count_of(m.signals.size());
-}
-
 }  // namespace
 
 const char* packet_problem_name(PacketProblem problem) {
@@ -184,14 +126,15 @@ const char* packet_problem_name(PacketProblem problem) {
 template <class Message>
 PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
                      Message& message) noexcept {
-  const Layout layout = layout_of(message);
-  if (packet.size() > layout.largest) return PacketProblem::too_large;
+  const std::string_view layout = layout_of(message);
+  if (packet.size() > static_cast<std::size_t>(Message::LARGEST_PACKET))
+    return PacketProblem::too_large;
   if (!has_fingerprint(packet, Message::getHash())) return PacketProblem::wrong_type;
   if (key != nullptr && is_signed(layout) && !authentic(packet, *key)) {
     return PacketProblem::not_authentic;
   }
-  Walk walk(packet.subspan(kFingerprintBytes));
-  if (!walk.follow(layout.fields) || !walk.at_end()) return PacketProblem::malformed;
+  Walk walk(packet.subspan(kFingerprintBytes), longest_text(message));
+  if (!walk.follow(layout) || !walk.at_end()) return PacketProblem::malformed;
   try {
     Message read{};  // new: the generated code does not clear lists without entries
     const int size = static_cast<int>(packet.size());
@@ -206,7 +149,7 @@ PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
 template <class Message>
 PacketBytes encode(Message message, const LiveKey* key) {
   settle(message);
-  const Layout layout = layout_of(message);
+  const std::string_view layout = layout_of(message);
   PacketBytes packet(static_cast<std::size_t>(message.getEncodedSize()));
   const int size = message.encode(packet.data(), 0, static_cast<int>(packet.size()));
   packet.resize(static_cast<std::size_t>(std::max(0, size)));
@@ -226,12 +169,7 @@ PacketBytes seal(PacketBytes packet, const LiveKey& key) {
 #define FOOTFALL_MESSAGE(type)                                                                  \
   template PacketProblem decode(std::span<const std::uint8_t>, const LiveKey*, type&) noexcept; \
   template PacketBytes encode(type, const LiveKey*);
-FOOTFALL_MESSAGE(hello_t)
-FOOTFALL_MESSAGE(request_t)
-FOOTFALL_MESSAGE(answer_t)
-FOOTFALL_MESSAGE(catalogue_t)
-FOOTFALL_MESSAGE(values_t)
-FOOTFALL_MESSAGE(telemetry_t)
+FOOTFALL_PACKETS(FOOTFALL_MESSAGE)
 #undef FOOTFALL_MESSAGE
 
 }  // namespace footfall::engine

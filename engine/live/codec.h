@@ -23,7 +23,7 @@ const char* packet_problem_name(PacketProblem problem);
 
 using PacketBytes = std::vector<std::uint8_t>;
 
-// Both are there for hello_t, request_t, answer_t, catalogue_t, values_t, telemetry_t.
+// Both exist for every message of engine/lcm/messages with the constant LARGEST_PACKET.
 
 // Decodes a packet. With a key, a message type with a `mac` must be signed with it; that is checked
 // first. The message is written only if the packet is well formed: texts are UTF-8 without control

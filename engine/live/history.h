@@ -10,7 +10,7 @@ namespace footfall::engine {
 
 // A change of values: previous values (or ramp targets) and new ones.
 struct LiveChange {
-  std::vector<EditValue> before, after;
+  std::vector<behaviors::SlotValue> before, after;
 };
 
 class LiveHistory {

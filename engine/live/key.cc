@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/text/file_descriptor.h"
+
 namespace footfall::engine {
 namespace {
 
@@ -25,16 +27,6 @@ constexpr std::size_t kDigits = 2 * std::tuple_size_v<LiveKey>;
 }
 
 std::string cause() { return std::strerror(errno); }
-
-struct Descriptor {
-  explicit Descriptor(int number) : fd(number) {}
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int fd;
-};
 
 void make_folders(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
@@ -57,11 +49,11 @@ bool write_new_key(const std::string& path) {
   sodium_bin2hex(text.data(), text.size(), key.data(), key.size());
   text[kDigits] = '\n';
   std::string temporary = path + ".XXXXXX";
-  const Descriptor file(::mkstemp(temporary.data()));  // mode 0600
-  if (file.fd < 0) fail(path, "cannot write it: " + cause());
+  const core::FileDescriptor file(::mkstemp(temporary.data()));  // mode 0600
+  if (!file.open()) fail(path, "cannot write it: " + cause());
   const bool written =
-      ::write(file.fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-      ::fsync(file.fd) == 0;
+      ::write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      ::fsync(file.get()) == 0;
   std::string problem = written ? "" : cause();
   const bool linked = written && ::link(temporary.c_str(), path.c_str()) == 0;
   const bool taken = written && !linked && errno == EEXIST;
@@ -94,19 +86,19 @@ std::string default_key_path() {
 }
 
 LiveKey read_key(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.fd < 0 && errno == ENOENT) {
+  const core::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.open() && errno == ENOENT) {
     fail(path, "no such file; `footfall tune key " + path + "` makes a key");
   }
-  if (file.fd < 0) fail(path, "cannot read it: " + cause());
+  if (!file.open()) fail(path, "cannot read it: " + cause());
   struct stat facts {};
-  if (::fstat(file.fd, &facts) != 0) fail(path, "cannot read it: " + cause());
+  if (::fstat(file.get(), &facts) != 0) fail(path, "cannot read it: " + cause());
   if (!S_ISREG(facts.st_mode)) fail(path, "expected a file with a key");
   if ((facts.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     fail(path, "others than its owner may read or write this key: chmod 600 '" + path + "'");
   }
   std::array<char, kDigits + 2> text{};
-  const ssize_t size = ::read(file.fd, text.data(), text.size());
+  const ssize_t size = ::read(file.get(), text.data(), text.size());
   LiveKey key;
   std::size_t bytes = 0;
   const bool ends = size == static_cast<ssize_t>(kDigits) ||

@@ -37,20 +37,28 @@ std::string number_with_unit(double value, core::Dimension dimension) {
   return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
-std::string edit_text(const Behavior& behavior, const EditValue& edit) {
-  const ParameterInfo& info = behavior.parameters[at(edit.parameter)];
-  std::string text = info.name;
-  if (edit.component >= 0 && info.size > 1) {
-    text += info.size <= 3 ? fmt::format(".{}", "xyz"[edit.component])
-                           : fmt::format("[{}]", edit.component);
+// The text of the value at the head of a batch's, or of all values of a parameter if all follow
+// each other there; cuts them off.
+std::string cut_change(const Behavior& behavior, std::span<const behaviors::SlotValue>& values) {
+  const int slot = values.front().slot;
+  const ParameterInfo& info = behavior.parameters[at(behavior.parameter_of_slot(slot))];
+  std::size_t count = 0;
+  while (count < std::min(values.size(), at(info.size)) &&
+         values[count].slot == info.slot + static_cast<int>(count)) {
+    ++count;
   }
-  text += " = ";
-  if (edit.values.size() == 1) return text + number_with_unit(edit.values[0], info.dimension);
-  std::string list;
-  for (const double value : edit.values) {
+  const bool whole = count == at(info.size);
+  if (!whole) count = 1;
+  std::string text = info.name, list;
+  if (!whole) {
+    const int component = slot - info.slot;
+    text += info.size <= 3 ? fmt::format(".{}", "xyz"[component]) : fmt::format("[{}]", component);
+  }
+  for (const auto& [ignored, value] : values.first(count)) {
     list += (list.empty() ? "" : ", ") + number_with_unit(value, info.dimension);
   }
-  return text + "[" + list + "]";
+  values = values.subspan(count);
+  return text + " = " + (count == 1 ? list : "[" + list + "]");
 }
 
 }  // namespace
@@ -90,7 +98,7 @@ EditBatch read_edit(const Behavior& behavior, const LiveNames& names,
       const bool twice = part.component >= 0 && change.component >= 0;
       if (twice) reasons.push_back(core::printable(change.name, kMaxName) + ": is one value");
       const int component = part.component >= 0 ? part.component : change.component;
-      batch.values.push_back({part.parameter, component, change.values});
+      add_values(behavior, {part.parameter, component}, change.values, batch.values, reasons);
     }
   }
   if (request.events.size() > kMaxEditEvents) {
@@ -115,11 +123,13 @@ std::string change_text(const Behavior& behavior, const EditBatch& batch, double
     text += text.empty() ? "" : ", ";
     text += part;
   };
-  const std::size_t mentioned = std::min(batch.values.size(), kMaxMentioned);
-  for (std::size_t i = 0; i < mentioned; ++i) add(edit_text(behavior, batch.values[i]));
-  if (mentioned < batch.values.size()) {
-    add(fmt::format("{} more", batch.values.size() - mentioned));
+  std::span<const behaviors::SlotValue> rest = batch.values;
+  std::size_t changes = 0;
+  for (; !rest.empty(); ++changes) {
+    const std::string change = cut_change(behavior, rest);
+    if (changes < kMaxMentioned) add(change);
   }
+  if (changes > kMaxMentioned) add(fmt::format("{} more", changes - kMaxMentioned));
   if (ramp > 0.0 && !batch.values.empty()) {
     text += " over " + number_with_unit(ramp, core::kTime);
   }

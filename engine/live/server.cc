@@ -40,7 +40,7 @@ struct LiveServer::Impl {
   struct Pending {
     answer_t answer;  // as far as known
     std::int8_t what = request_t::EDIT;
-    std::vector<EditValue> values;  // of an EDIT
+    std::vector<behaviors::SlotValue> values;  // of an EDIT
   };
 
   Impl(const Behavior& b, EditEntrance& e, const LiveSettings& s)
@@ -200,10 +200,7 @@ void LiveServer::Impl::remember(const Pending& done, std::span<const double> bef
   if (done.what == request_t::REDO) return history.redid();
   if (done.values.empty()) return;  // events only
   LiveChange change{done.values, done.values};
-  std::size_t next = 0;
-  for (EditValue& edit : change.before) {
-    for (double& value : edit.values) value = before[next++];
-  }
+  for (std::size_t k = 0; k < change.before.size(); ++k) change.before[k].value = before[k];
   history.changed(std::move(change));
 }
 

@@ -66,7 +66,7 @@ LogEncoder::LogEncoder(const std::string& path, const core::SignalTable& table,
   for (const auto& [rate, integral] : layout_.integrals()) {
     input_codec_.set_integral(integral, rate);
   }
-  input_codec_.set_unit(layout_.quaternion() + 3, layout_.quaternion());
+  for (const int w : layout_.quaternions()) input_codec_.set_unit(w + 3, w);
   write_head(table, header);
   write_parameters(header);
 }

@@ -207,7 +207,7 @@ void ControlLoop::take_inputs() noexcept {
     trace_->planned.clear();
     planners_.deliver(tick_, *machine_, &trace_->planned, false);
     for (const behaviors::PlanAnswer& plan : trace_->plans) machine_->deliver(plan);
-    for (const ParameterWrite& write : trace_->writes) {
+    for (const behaviors::SlotValue& write : trace_->writes) {
       machine_->parameters()[static_cast<std::size_t>(write.slot)] = write.value;
     }
     for (const int event : trace_->events) machine_->raise(event);

@@ -26,7 +26,7 @@ void InputTrace::clear() noexcept {
 }
 
 void WriteWatch::find(std::span<const double> parameters,
-                      std::vector<ParameterWrite>& writes) noexcept {
+                      std::vector<behaviors::SlotValue>& writes) noexcept {
   if (std::memcmp(known_.data(), parameters.data(), parameters.size_bytes()) == 0) return;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (std::memcmp(&known_[i], &parameters[i], sizeof(double)) == 0) continue;

@@ -12,14 +12,9 @@
 
 namespace footfall::engine {
 
-struct ParameterWrite {
-  int slot = 0;  // of Machine::parameters()
-  double value = 0.0;
-};
-
 // Of one tick; room for everything is made once, by size_for().
 struct InputTrace {
-  std::vector<ParameterWrite> writes;        // since the machine's last tick, whoever wrote
+  std::vector<behaviors::SlotValue> writes;  // since the machine's last tick, whoever wrote
   std::vector<int> events;                   // raised from outside, in order
   std::vector<behaviors::PlanAnswer> plans;  // handed to the machine in this tick
   bool limit_steps = false;                  // torque steps are limited in this tick
@@ -40,7 +35,7 @@ class WriteWatch {
  public:
   explicit WriteWatch(const behaviors::Behavior& behavior) : known_(behavior.values) {}
   // Just before the machine's tick: what differs from what is known goes to `writes`.
-  void find(std::span<const double> parameters, std::vector<ParameterWrite>& writes) noexcept;
+  void find(std::span<const double> parameters, std::vector<behaviors::SlotValue>& writes) noexcept;
   // Just after it.
   void remember(std::span<const double> parameters) noexcept;
 

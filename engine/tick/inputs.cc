@@ -3,26 +3,47 @@
 
 #include <array>
 #include <bit>
-#include <cstring>
+#include <tuple>
+#include <type_traits>
 
 namespace footfall::engine {
 namespace {
 
-// Calls visit(double&) for every number of a tick in the order of the columns behind the integers.
-template <typename Sensors, typename Visit>
-void visit_numbers(Sensors& s, std::size_t joints, std::size_t contacts, Visit&& visit) {
-  for (std::size_t j = 0; j < joints; ++j) visit(s.qd[j]);
-  for (std::size_t j = 0; j < joints; ++j) visit(s.q[j]);
-  for (std::size_t j = 0; j < joints; ++j) visit(s.tau[j]);
-  for (auto& x : s.gyro) visit(x);
-  for (auto& x : s.accelerometer) visit(x);
-  for (std::size_t c = 0; c < contacts; ++c) {
-    for (auto& x : s.force[c]) visit(x);
+// How many entries of an array the robot has.
+template <std::size_t size>
+std::size_t used(std::size_t joints, std::size_t contacts) noexcept {
+  return size == core::kMaxJoints ? joints : size == core::kMaxContacts ? contacts : size;
+}
+
+// Calls visit(number) for each number of a field, in the order of its columns.
+template <typename Value, typename Visit>
+void visit_numbers(Value& value, std::size_t joints, std::size_t contacts, Visit& visit) {
+  if constexpr (std::is_same_v<std::remove_const_t<Value>, double>) {
+    visit(value);
+  } else {
+    const std::size_t count =
+        used<std::tuple_size<std::remove_const_t<Value>>::value>(joints, contacts);
+    for (std::size_t k = 0; k < count; ++k) visit_numbers(value[k], joints, contacts, visit);
   }
-  for (auto& x : s.v_WB) visit(x);
-  for (auto& x : s.p_WB) visit(x);
-  for (auto& x : s.q_WB) visit(x);
-  for (auto& x : s.w_WB_B) visit(x);
+}
+
+// The names of a field's columns.
+template <typename Value>
+void name_columns(const std::string& stem, const std::vector<std::string>& joints,
+                  const std::vector<std::string>& contacts, std::vector<std::string>& names) {
+  if constexpr (std::is_same_v<Value, double>) {
+    names.push_back(stem);
+  } else {
+    constexpr std::size_t kSize = std::tuple_size_v<Value>;
+    static const std::vector<std::string> xyz = {"x", "y", "z"}, wxyz = {"w", "x", "y", "z"};
+    const auto& parts = kSize == core::kMaxJoints     ? joints
+                        : kSize == core::kMaxContacts ? contacts
+                        : kSize == 4                  ? wxyz
+                                                      : xyz;
+    for (const std::string& part : parts) {
+      name_columns<typename Value::value_type>(stem + "." + part, joints, contacts, names);
+    }
+  }
 }
 
 }  // namespace
@@ -30,63 +51,73 @@ void visit_numbers(Sensors& s, std::size_t joints, std::size_t contacts, Visit&&
 InputLayout::InputLayout(const std::vector<std::string>& joints,
                          const std::vector<std::string>& contacts)
     : joints_(joints.size()), contacts_(contacts.size()) {
-  const auto add = [&](const std::string& stem, const std::vector<std::string>& names) {
-    for (const std::string& name : names) names_.push_back(stem + name);
+  struct Range {
+    std::string_view name, rate;
+    int first, count;
   };
-  const std::vector<std::string> xyz = {"x", "y", "z"};
-  add("command.", joints);
-  add("", {"time_ns", "flags"});
-  add("qd.", joints);
-  add("q.", joints);
-  add("tau.", joints);
-  add("gyro.", xyz);
-  add("accelerometer.", xyz);
-  for (const std::string& contact : contacts) add("force." + contact + ".", xyz);
-  add("v_WB.", xyz);
-  add("p_WB.", xyz);
-  add("q_WB.", {"w", "x", "y", "z"});
-  add("w_WB_B.", xyz);
-}
-
-std::vector<std::pair<int, int>> InputLayout::integrals() const {
-  const auto joints = static_cast<int>(joints_);
-  const int qd = joints + 2;
-  const int v = qd + 3 * joints + 6 + 3 * static_cast<int>(contacts_);
-  std::vector<std::pair<int, int>> pairs;
-  for (int j = 0; j < joints; ++j) pairs.emplace_back(qd + j, qd + joints + j);
-  for (int k = 0; k < 3; ++k) pairs.emplace_back(v + k, v + 3 + k);
-  return pairs;
+  std::vector<Range> ranges;
+  const auto add = [&]<typename Owner, typename Value>(const hal::NumberField<Owner, Value>& f) {
+    const int first = columns();
+    name_columns<Value>(std::string(f.name), joints, contacts, names_);
+    ranges.push_back({f.name, f.rate, first, columns() - first});
+    if (std::is_same_v<Value, std::array<double, 4>>) quaternions_.push_back(first);
+  };
+  hal::for_each_field(hal::kCommandFields, add);
+  names_.emplace_back(kTimeColumn);
+  names_.emplace_back(kFlagsColumn);
+  hal::for_each_field(hal::kSensorFields, add);
+  for (const Range& field : ranges) {
+    for (const Range& rate : ranges) {
+      if (field.rate.empty() || rate.name != field.rate) continue;
+      for (int k = 0; k < field.count; ++k) {
+        integrals_.emplace_back(rate.first + k, field.first + k);
+      }
+    }
+  }
 }
 
 void InputLayout::pack(const hal::Sensors& sensors, bool fresh, const hal::Commands& commands,
                        std::uint64_t* row) const noexcept {
-  std::memcpy(row, commands.tau.data(), joints_ * sizeof(double));
-  row += joints_;
+  const auto put = [&](const double& x) { *row++ = std::bit_cast<std::uint64_t>(x); };
+  hal::for_each_field(hal::kCommandFields, [&](const auto& field) {
+    visit_numbers(commands.*field.member, joints_, contacts_, put);
+  });
   *row++ = static_cast<std::uint64_t>(sensors.time_ns);
-  std::uint64_t flags =
-      (fresh ? kFresh : 0) | (sensors.has_truth ? kTruth : 0) |
-      (sensors.body_contact ? kBodyContact : 0) | (sensors.backend_fault ? kBackendFault : 0) |
-      (sensors.imu_fresh ? kImuFresh : 0) | (sensors.mocap_fresh ? kMocapFresh : 0);
-  for (std::size_t c = 0; c < contacts_; ++c) flags |= sensors.contact[c] ? kContact << c : 0;
+  std::uint64_t flags = fresh ? hal::kFreshBit : 0;
+  hal::for_each_field(hal::kFlagFields, [&](const auto& field) {
+    const auto& value = sensors.*field.member;
+    if constexpr (std::is_same_v<decltype(value), const bool&>) {
+      flags |= value ? field.bit : 0;
+    } else {
+      for (std::size_t c = 0; c < contacts_; ++c) flags |= value[c] ? field.bit << c : 0;
+    }
+  });
   *row++ = flags;
-  visit_numbers(sensors, joints_, contacts_,
-                [&](const double& x) { *row++ = std::bit_cast<std::uint64_t>(x); });
+  hal::for_each_field(hal::kSensorFields, [&](const auto& field) {
+    visit_numbers(sensors.*field.member, joints_, contacts_, put);
+  });
 }
 
 bool InputLayout::unpack(const std::uint64_t* row, hal::Sensors& sensors,
                          hal::Commands& commands) const noexcept {
-  std::memcpy(commands.tau.data(), row, joints_ * sizeof(double));
-  row += joints_;
+  const auto take = [&](double& x) { x = std::bit_cast<double>(*row++); };
+  hal::for_each_field(hal::kCommandFields, [&](const auto& field) {
+    visit_numbers(commands.*field.member, joints_, contacts_, take);
+  });
   sensors.time_ns = static_cast<std::int64_t>(*row++);
   const std::uint64_t flags = *row++;
-  sensors.has_truth = (flags & kTruth) != 0;
-  sensors.body_contact = (flags & kBodyContact) != 0;
-  sensors.backend_fault = (flags & kBackendFault) != 0;
-  sensors.imu_fresh = (flags & kImuFresh) != 0;
-  sensors.mocap_fresh = (flags & kMocapFresh) != 0;
-  for (std::size_t c = 0; c < contacts_; ++c) sensors.contact[c] = (flags >> c & kContact) != 0;
-  visit_numbers(sensors, joints_, contacts_, [&](double& x) { x = std::bit_cast<double>(*row++); });
-  return (flags & kFresh) != 0;
+  hal::for_each_field(hal::kFlagFields, [&](const auto& field) {
+    auto& value = sensors.*field.member;
+    if constexpr (std::is_same_v<decltype(value), bool&>) {
+      value = (flags & field.bit) != 0;
+    } else {
+      for (std::size_t c = 0; c < contacts_; ++c) value[c] = (flags >> c & field.bit) != 0;
+    }
+  });
+  hal::for_each_field(hal::kSensorFields, [&](const auto& field) {
+    visit_numbers(sensors.*field.member, joints_, contacts_, take);
+  });
+  return (flags & hal::kFreshBit) != 0;
 }
 
 // Four lanes, since a multiplication waits for the one before it.

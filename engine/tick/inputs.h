@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,22 +12,23 @@
 
 namespace footfall::engine {
 
-// Columns, in this order: commands (tau of each joint), time_ns, flags, qd, q, tau of each joint,
-// gyro, accelerometer, force of each contact (x y z), v_WB, p_WB, q_WB, w_WB_B. time_ns and flags
-// are integers, all else doubles.
+// Columns, in this order: hal::kCommandFields, time_ns, flags, hal::kSensorFields. time_ns and
+// flags (hal::kFreshBit, hal::kFlagFields) are integers, all others doubles.
 class InputLayout {
  public:
-  // Bits of `flags`; that of contact c is kContact << c.
-  static constexpr std::uint64_t kFresh = 1, kTruth = 2, kBodyContact = 4, kBackendFault = 8,
-                                 kImuFresh = 16, kMocapFresh = 32, kContact = 256;
+  static constexpr std::string_view kTimeColumn = "time_ns", kFlagsColumn = "flags";
 
   InputLayout(const std::vector<std::string>& joints, const std::vector<std::string>& contacts);
 
   int columns() const noexcept { return static_cast<int>(names_.size()); }
   const std::vector<std::string>& names() const noexcept { return names_; }
+  static bool is_integer(std::string_view column) noexcept {
+    return column == kTimeColumn || column == kFlagsColumn;
+  }
   // Pairs of columns, the second being the integral of the first.
-  std::vector<std::pair<int, int>> integrals() const;
-  int quaternion() const noexcept { return columns() - 7; }  // column of its w
+  const std::vector<std::pair<int, int>>& integrals() const noexcept { return integrals_; }
+  // The column of the w of each unit quaternion w x y z.
+  const std::vector<int>& quaternions() const noexcept { return quaternions_; }
 
   // fresh: whether the read that gave the sensors brought something new.
   void pack(const hal::Sensors& sensors, bool fresh, const hal::Commands& commands,
@@ -38,6 +40,8 @@ class InputLayout {
  private:
   std::size_t joints_, contacts_;
   std::vector<std::string> names_;
+  std::vector<std::pair<int, int>> integrals_;
+  std::vector<int> quaternions_;
 };
 
 // A digest of a table of doubles that changes with any bit of any of them.

@@ -50,7 +50,7 @@ class ScriptLink {
     std::vector<std::uint8_t> active;
     std::size_t event_count = 0, edit_count = 0;
     std::array<int, kAnswers> events{};
-    std::array<behaviors::ScriptEdit, kAnswers> edits{};
+    std::array<behaviors::SlotValue, kAnswers> edits{};
   };
 
   void work() noexcept;

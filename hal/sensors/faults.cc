@@ -8,19 +8,20 @@ void SensorFaults::start() {
   real_.start();
 }
 
-// What a simulator tells beside its sensors (truth, warnings) goes on unless all fails.
 bool SensorFaults::read(Sensors& sensors) noexcept {
   const bool fresh = real_.read(fresh_);
   if (failing(SensorGroup::all)) return false;
-  const auto gyro = sensors.gyro;
-  const auto accelerometer = sensors.accelerometer;
-  sensors = fresh_;
-  if (failing(SensorGroup::imu)) {
-    sensors.gyro = gyro;
-    sensors.accelerometer = accelerometer;
-    sensors.imu_fresh = false;
-  }
-  if (failing(SensorGroup::mocap)) sensors.mocap_fresh = false;
+  sensors.time_ns = fresh_.time_ns;
+  for_each_field(kSensorFields, [&](const auto& field) {
+    if (!failing(field.group)) sensors.*field.member = fresh_.*field.member;
+  });
+  for_each_field(kFlagFields, [&](const auto& field) {
+    if (!failing(field.group)) {
+      sensors.*field.member = fresh_.*field.member;
+    } else if (field.validity) {
+      sensors.*field.member = {};
+    }
+  });
   return fresh;
 }
 

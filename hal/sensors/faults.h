@@ -1,5 +1,5 @@
-// A backend whose sensors can be made to fail on purpose: scenarios ask for it. What fails keeps
-// its last value and says so.
+// A backend whose sensors can be made to fail on purpose: scenarios ask for it. A field that fails
+// keeps its last value, its group's validity flag is false.
 #pragma once
 
 #include <string>
@@ -7,12 +7,6 @@
 #include "hal/hardware.h"
 
 namespace footfall::hal {
-
-enum class SensorGroup : std::uint8_t {
-  mocap,  // Sensors::mocap_fresh
-  imu,    // gyro, accelerometer, Sensors::imu_fresh
-  all,    // everything: read() tells that nothing new has come
-};
 
 class SensorFaults final : public Hardware {
  public:
@@ -34,7 +28,7 @@ class SensorFaults final : public Hardware {
   }
   Hardware& real_;
   Sensors fresh_;
-  std::array<bool, 3> failing_{};
+  std::array<bool, static_cast<std::size_t>(SensorGroup::count)> failing_{};
 };
 
 }  // namespace footfall::hal

@@ -153,15 +153,11 @@ void ScenarioCues::act(const ScriptEntry& entry, RunLog& log) {
   }
 }
 
-void ScenarioCues::submit(const ScriptEntry& entry, const std::vector<NewValues>& values,
+void ScenarioCues::submit(const ScriptEntry& entry, const std::vector<behaviors::SlotValue>& values,
                           engine::EditSource source, RunLog& log) {
   engine::EditBatch batch;
   batch.source = source;
-  for (const NewValues& value : values) {
-    const int size = loop_.behavior().parameters[at(value.parameter)].size;
-    const bool one = value.values.size() == 1 && size > 1;
-    batch.values.push_back({value.parameter, one ? value.first : -1, value.values});
-  }
+  batch.values = values;
   if (source == engine::EditSource::scenario) {
     batch.over = entry.over;
     if (entry.raise >= 0) batch.events.push_back(entry.raise);

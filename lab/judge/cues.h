@@ -73,7 +73,7 @@ class ScenarioCues {
   bool due(const Cue& cue, const StepClock& steps) const;
   bool in_phase(const Moment& moment) const;
   void act(const ScriptEntry& entry, RunLog& log);
-  void submit(const ScriptEntry& entry, const std::vector<NewValues>& values,
+  void submit(const ScriptEntry& entry, const std::vector<behaviors::SlotValue>& values,
               engine::EditSource source, RunLog& log);
   void hand_in(const ScriptEntry& entry, const engine::EditBatch& batch, RunLog& log);
   void call(const ScriptEntry& entry, RunLog& log);

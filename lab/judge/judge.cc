@@ -44,11 +44,11 @@ ScenarioJudge::ScenarioJudge(const ScenarioDescription& scenario, const engine::
       judged.operands = operands_of(scenario.expressions, expectation.expression);
       judged.values.assign(judged.operands.size(), kNan);
     }
-    for (const Reduction& reduction : scenario.reductions) {
-      if (std::ranges::find(judged.operands, reduction.value) == judged.operands.end()) continue;
-      judged.sums.emplace_back().of = &reduction;
+    for (const SignalStatistic& of : scenario.statistics) {
+      if (std::ranges::find(judged.operands, of.value) == judged.operands.end()) continue;
+      judged.statistics.push_back({&of, behaviors::RunningStatistic(*of.statistic), {}});
     }
-    judged.at_end = that && judged.sums.empty() && !expectation.timed && !expectation.within;
+    judged.at_end = that && judged.statistics.empty() && !expectation.timed && !expectation.within;
     judged.begun.assign(expectation.states.size(), -1);
     judged.entries.assign(expectation.states.size(), 0);
     judged_.push_back(std::move(judged));
@@ -111,10 +111,10 @@ void ScenarioJudge::mark(Judged& judged) {
   }
 }
 
-// With a reduction: what it gives so far; at the end of its time it must hold. `within`: it must
+// With a statistic: its value so far; at the end of its time it must hold. `within`: it must
 // hold once. Else it must hold in every tick.
 void ScenarioJudge::observe_that(Judged& judged) {
-  for (Sums& sums : judged.sums) update(sums);
+  for (Running& running : judged.statistics) update(running);
   const bool before = judged.holds || !judged.judged;
   judged.holds = evaluate(judged);
   const bool first = !judged.judged;
@@ -124,42 +124,18 @@ void ScenarioJudge::observe_that(Judged& judged) {
     return;
   }
   if (judged.holds || !before) return;
-  if (first && !judged.sums.empty()) return;  // it never held: the peak tells more
+  if (first && !judged.statistics.empty())
+    return;  // it never held: the sample that decided is shown
   mark(judged);
-  judged.decided = judged.sums.empty();
+  judged.decided = judged.statistics.empty();
 }
 
-void ScenarioJudge::update(Sums& sums) {
-  const std::string& function = sums.of->function;
-  const bool magnitude = function.size() > 4 && function.ends_with(" abs");
-  const double raw = signals_[sums.of->signal];
-  const double x = magnitude ? std::abs(raw) : raw;
-  if (!std::isnan(x)) {
-    ++sums.samples;
-    const double size = function[0] == 'm' && function[1] == 'a' ? x : std::abs(x);
-    if (size > sums.extreme) {
-      sums.extreme = size;
-      sums.peak = here();
-    }
-    if (function.starts_with("rms")) {
-      sums.sum += x * x;
-      sums.value = std::sqrt(sums.sum / static_cast<double>(sums.samples));
-    } else if (function.starts_with("mean")) {
-      sums.sum += x;
-      sums.value = sums.sum / static_cast<double>(sums.samples);
-    } else if (function.starts_with("max")) {
-      sums.value = sums.extreme;
-    }
+void ScenarioJudge::update(Running& running) {
+  const double value = signals_[running.of->signal];
+  if (running.statistic.add(running.of->magnitude ? std::abs(value) : value)) {
+    running.decided_at = here();
   }
-  const bool on = !std::isnan(x) && x != 0.0;
-  if (function.starts_with("count")) {  // how often it became true
-    sums.sum += on && !sums.was_on ? 1.0 : 0.0;
-    sums.value = sums.sum;
-    sums.was_on = on;
-    signals_[sums.of->value] = sums.value;
-    return;
-  }
-  signals_[sums.of->value] = sums.samples > 0 ? sums.value : kNan;
+  signals_[running.of->value] = running.statistic.value();
 }
 
 // The latest beginning of each part of the sequence that was passed in order; the latest is the

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "behaviors/expression/statistics.h"
 #include "engine/tick/control_loop.h"
 #include "lab/judge/result.h"
 #include "lab/run/run.h"
@@ -32,22 +33,18 @@ class ScenarioJudge {
     std::array<int, 4> states{};
     int count = 0;
   };
-  // A reduction over the time of one expectation.
-  struct Sums {
-    const Reduction* of = nullptr;
-    double value = 0.0;  // in force
-    double sum = 0.0;
-    double extreme = -1e300;
-    std::int64_t samples = 0;
-    bool was_on = false;
-    Place peak;
+  // A statistic over the time of one expectation.
+  struct Running {
+    const SignalStatistic* of = nullptr;
+    behaviors::RunningStatistic statistic;
+    Place decided_at;
   };
   struct Judged {
     const Expectation* expectation = nullptr;
     std::int64_t first = 0, last = 0;  // ticks of its time
     bool at_end = false;               // a lone condition: judged once, when the run ends
     std::vector<int> operands;         // signals it speaks of
-    std::vector<Sums> sums;
+    std::vector<Running> statistics;
     bool judged = false;   // at least once
     bool holds = false;    // at the latest tick
     bool decided = false;  // nothing can change it
@@ -65,7 +62,7 @@ class ScenarioJudge {
   void mark(Judged& judged);
   void observe_that(Judged& judged);
   void observe_sequence(Judged& judged);
-  void update(Sums& sums);
+  void update(Running& running);
   void finish_that(Judged& judged, ExpectationOutcome& out);
   void finish_sequence(const Judged& judged, ExpectationOutcome& out);
   void finish_end(const Judged& judged, RunEnd end, ExpectationOutcome& out) const;
@@ -76,7 +73,7 @@ class ScenarioJudge {
 
   const ScenarioDescription& scenario_;
   const engine::ControlLoop& loop_;
-  core::SignalTable signals_;  // the run's, and the reductions behind them
+  core::SignalTable signals_;  // the run's, and the statistics behind them
   std::vector<Judged> judged_;
   std::int64_t tick_ = 0;
   Place last_;

@@ -14,20 +14,6 @@ behaviors::ScriptSettings settings_with(std::uint64_t seed) {
   return settings;
 }
 
-// The parameter's value that the slot is. A later write of one call to the same slot wins.
-void put(const behaviors::Behavior& behavior, const behaviors::ScriptEdit& edit,
-         std::vector<engine::EditValue>& values) {
-  const auto owner = std::ranges::find_if(behavior.parameters, [&](const auto& info) {
-    return edit.slot >= info.slot && edit.slot < info.slot + info.size;
-  });
-  const auto parameter = static_cast<int>(owner - behavior.parameters.begin());
-  const int component = edit.slot - owner->slot;
-  std::erase_if(values, [&](const engine::EditValue& value) {
-    return value.parameter == parameter && value.component == component;
-  });
-  values.push_back({parameter, component, {edit.value}});
-}
-
 }  // namespace
 
 ScenarioLua::ScenarioLua(const ScenarioDescription& scenario, engine::ControlLoop& loop,
@@ -50,8 +36,9 @@ ScenarioLua::Result ScenarioLua::call(const std::string& function) {
   result.failed = !script_.call(function, view, answer);
   result.messages = std::move(answer.messages);
   result.batch.source = engine::EditSource::set;
-  for (const behaviors::ScriptEdit& edit : answer.edits) {
-    put(loop_.behavior(), edit, result.batch.values);
+  for (const behaviors::SlotValue& edit : answer.edits) {  // of one slot the last counts
+    std::erase_if(result.batch.values, [&](const auto& v) { return v.slot == edit.slot; });
+    result.batch.values.push_back(edit);
   }
   result.batch.events = std::move(answer.events);
   return result;

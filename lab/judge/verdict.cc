@@ -69,20 +69,21 @@ void ScenarioJudge::finish_that(Judged& judged, ExpectationOutcome& out) {
     mark(judged);
     judged.place = last_;
   }
-  const bool every_tick = !judged.at_end && judged.sums.empty() && !judged.expectation->within;
+  const bool every_tick =
+      !judged.at_end && judged.statistics.empty() && !judged.expectation->within;
   out.passed = judged.judged && (every_tick ? !judged.decided : judged.holds);
   if (!judged.judged) {
     out.why = fmt::format("the run ended at {:.3f} s, before it could be judged", loop_.time());
     return;
   }
   if (out.passed && every_tick) return;  // no one tick speaks for all
-  if (!judged.sums.empty() && (out.passed || judged.place.tick < 0)) {
-    judged.place = judged.sums.front().peak;
+  if (!judged.statistics.empty() && (out.passed || judged.place.tick < 0)) {
+    judged.place = judged.statistics.front().decided_at;
   }
-  if (!judged.sums.empty() || judged.place.tick < 0) {
+  if (!judged.statistics.empty() || judged.place.tick < 0) {
     // What the whole time came to, not what it was at the place.
-    for (const Sums& sums : judged.sums) {
-      signals_[sums.of->value] = sums.samples > 0 ? sums.value : std::nan("");
+    for (const Running& running : judged.statistics) {
+      signals_[running.of->value] = running.statistic.value();
     }
     for (std::size_t k = 0; k < judged.operands.size(); ++k) {
       judged.values[k] = signals_[judged.operands[k]];
@@ -100,7 +101,7 @@ void ScenarioJudge::finish_that(Judged& judged, ExpectationOutcome& out) {
   }
   out.why = judged.at_end                ? "not so at the end of the run"
             : judged.expectation->within ? "it never became so"
-            : judged.sums.empty()        ? "not so"
+            : judged.statistics.empty()  ? "not so"
                                          : "not so over this time";
 }
 

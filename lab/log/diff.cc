@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "engine/tick/inputs.h"
 
 namespace footfall::lab {
 namespace {
@@ -115,11 +116,12 @@ class Comparison {
       out_.setup.emplace_back("joints or contacts: not the same, so inputs are not compared");
       return;
     }
+    const auto commands =
+        at(std::ranges::find(x.columns, engine::InputLayout::kTimeColumn) - x.columns.begin());
     bool input = false, command = false;
     for (std::int64_t tick = begin; tick < end && !(input && command); ++tick) {
-      const auto joints = x.joints.size();
-      if (!command) command = row("command", tick, 0, joints);
-      if (!input) input = row("input", tick, joints, x.columns.size());
+      if (!command) command = row("command", tick, 0, commands);
+      if (!input) input = row("input", tick, commands, x.columns.size());
     }
     if (x.first_tick + x.ticks() != y.first_tick + y.ticks()) {
       add("length", end,
@@ -133,7 +135,7 @@ class Comparison {
       const std::uint64_t x = a_.inputs.row(tick)[c], y = b_.inputs.row(tick)[c];
       if (x == y) continue;
       const std::string& name = a_.inputs.columns[c];
-      const bool whole = name == "time_ns" || name == "flags";
+      const bool whole = engine::InputLayout::is_integer(name);
       text += fmt::format("{}{}: ", text.empty() ? "" : "; ", name);
       text +=
           whole ? fmt::format("{} against {}", x, y)

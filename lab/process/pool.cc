@@ -21,11 +21,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/text/file_descriptor.h"
+
 extern char** environ;  // NOLINT: POSIX gives it no header
 
 namespace footfall::lab {
 namespace {
 
+using core::FileDescriptor;
 using Clock = std::chrono::steady_clock;
 
 // Longest delay until a child is noticed that closed its pipes but keeps running.
@@ -37,32 +40,9 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A file descriptor, closed by the destructor.
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    close();
-    fd_ = std::exchange(other.fd_, -1);
-    return *this;
-  }
-  ~Descriptor() { close(); }
-  int get() const { return fd_; }
-  bool open() const { return fd_ >= 0; }
-  void close() {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-  }
-
- private:
-  int fd_ = -1;
-};
-
-// Output of a pipe, of which only the end is kept.
+// What a pipe delivers, of which only the end is kept.
 struct Stream {
-  Descriptor fd;
+  FileDescriptor fd;
   std::string* text = nullptr;
   std::size_t keep = 0;
 
@@ -100,11 +80,11 @@ struct Child {
   ProcessResult result;
 };
 
-void make_pipe(Descriptor& read_end, Descriptor& write_end) {
+void make_pipe(FileDescriptor& read_end, FileDescriptor& write_end) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-  read_end = Descriptor(ends[0]);
-  write_end = Descriptor(ends[1]);
+  read_end = FileDescriptor(ends[0]);
+  write_end = FileDescriptor(ends[1]);
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
 }
 
@@ -182,12 +162,12 @@ class Pool {
   void start(std::size_t index) {
     auto child = std::make_unique<Child>();
     child->index = index;
-    child->out = {Descriptor(), &child->result.out, settings_.keep_out};
-    child->err = {Descriptor(), &child->result.err, settings_.keep_err};
+    child->out = {FileDescriptor(), &child->result.out, settings_.keep_out};
+    child->err = {FileDescriptor(), &child->result.err, settings_.keep_err};
     child->start = Clock::now();
     int error = commands_[index].arguments.empty() ? ENOENT : 0;
     if (error == 0) {
-      Descriptor out, err;
+      FileDescriptor out, err;
       try {
         make_pipe(child->out.fd, out);
         make_pipe(child->err.fd, err);

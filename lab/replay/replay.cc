@@ -27,7 +27,7 @@ class LoggedHardware final : public hal::Hardware {
   void play(const LoggedInputs& inputs, std::int64_t next) {
     inputs_ = &inputs;
     layout_.emplace(inputs.joints, inputs.contacts);
-    if (layout_->columns() != static_cast<int>(inputs.columns.size())) {
+    if (layout_->names() != inputs.columns) {
       throw std::runtime_error("the log's inputs are not of this program's kind");
     }
     next_ = next;

@@ -239,18 +239,12 @@ std::vector<engine::EditBatch> goal_edits(const behaviors::Behavior& behavior,
                                           const RunSpec& spec) {
   if (!has_goal(behavior) || (!spec.goal && !spec.goal_velocity)) return {};
   const int slot = behavior.planners.front().goal_slot;
-  const auto& all = behavior.parameters;
-  const auto owner = std::ranges::find_if(all, [slot](const behaviors::ParameterInfo& info) {
-    return slot >= info.slot && slot < info.slot + info.size;
-  });
+  const behaviors::ParameterInfo& owner =
+      behavior.parameters[static_cast<std::size_t>(behavior.parameter_of_slot(slot))];
   const auto to = [&](const std::array<double, 2>& goal, double over) {
-    const auto parameter = static_cast<int>(owner - all.begin());
     engine::EditBatch edit;
     edit.source = engine::EditSource::command;
-    for (int k = 0; k < 2; ++k) {
-      edit.values.push_back(
-          {parameter, slot - owner->slot + k, {goal[static_cast<std::size_t>(k)]}});
-    }
+    edit.values = {{slot, goal[0]}, {slot + 1, goal[1]}};
     edit.over = over;
     return edit;
   };
@@ -264,8 +258,8 @@ std::vector<engine::EditBatch> goal_edits(const behaviors::Behavior& behavior,
   std::array<double, 2> end = start;
   for (std::size_t k = 0; k < 2; ++k) {
     const double v = (*spec.goal_velocity)[k];
-    if (v == 0.0 || !owner->has_range()) continue;
-    time = std::min(time, std::max(0.0, ((v > 0.0 ? owner->max : owner->min) - start[k]) / v));
+    if (v == 0.0 || !owner.has_range()) continue;
+    time = std::min(time, std::max(0.0, ((v > 0.0 ? owner.max : owner.min) - start[k]) / v));
   }
   for (std::size_t k = 0; k < 2; ++k) end[k] += (*spec.goal_velocity)[k] * time;
   edits.push_back(to(end, time));

@@ -89,7 +89,7 @@ void RunLog::write_edits() {
   for (std::size_t i = 0; i < loop_.edits().taken(); ++i) {
     const engine::EditOrder& order = loop_.edits().taken(i);
     std::string text;
-    for (const engine::SlotValue& edit : order.new_values()) {
+    for (const behaviors::SlotValue& edit : order.new_values()) {
       text += fmt::format("{}{} = {:g}", text.empty() ? "" : ", ",
                           slot_name(behavior.parameters, edit.slot), edit.value);
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "behaviors/compiled/behavior.h"
+#include "behaviors/expression/statistics.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/signal_table.h"
 
@@ -34,13 +35,6 @@ struct ScriptedPush {
   double direction = 0.0;  // rad in the heading frame, 0 forward, pi/2 left
 };
 
-// New values of a parameter or gain, SI: of all its slots, or of one component (`goal.y`).
-struct NewValues {
-  int parameter = 0;  // into Behavior::parameters
-  std::vector<double> values;
-  int first = 0;  // slot of the parameter that the first value is for
-};
-
 enum class InjectedFault : std::uint8_t {
   mocap_dropout,
   imu_dropout,
@@ -52,9 +46,9 @@ struct ScriptEntry {
   core::Mark mark;
   Moment moment;
   std::optional<ScriptedPush> push;
-  std::vector<NewValues> edit;  // applied as one live edit together with `raise`
-  double over = 0.0;            // s, ramp duration of the edit
-  std::vector<NewValues> set;
+  std::vector<behaviors::SlotValue> edit;  // with `raise`, as one live edit
+  double over = 0.0;                       // s, ramp of the edit
+  std::vector<behaviors::SlotValue> set;
   int raise = -1;  // into Behavior::events
   std::optional<InjectedFault> fault;
   std::string hold;                // body to hold; empty: none
@@ -62,11 +56,12 @@ struct ScriptEntry {
   std::optional<double> duration;  // s, of a fault or hold; nullopt: to the end
 };
 
-// `max mean rms count` of a signal (or of its magnitude) over the judged time.
-struct Reduction {
-  std::string function;  // "max"; "max abs" for the magnitude
-  int signal = 0;        // into ScenarioDescription::signals
-  int value = 0;         // index of the signal that holds the result, likewise
+// A statistic of a signal over the time that is judged.
+struct SignalStatistic {
+  const behaviors::Statistic* statistic = nullptr;
+  bool magnitude = false;  // of |signal|
+  int signal = 0;          // into ScenarioDescription::signals
+  int value = 0;           // the signal that holds it, likewise
 };
 
 struct Expectation {
@@ -110,8 +105,8 @@ struct ScenarioDescription {
   std::vector<Expectation> expectations;
   std::optional<GoldenSpec> golden;
   std::unique_ptr<behaviors::Behavior> behavior;
-  core::SignalTable signals;  // the behavior's signals, then `steps` and those of the statistics
-  std::vector<Reduction> reductions;
+  core::SignalTable signals;  // the behavior's, then `steps` and those of the statistics
+  std::vector<SignalStatistic> statistics;
   behaviors::ExpressionPool expressions;
   std::vector<std::string> files;           // files of its positions, by core::Mark::file
   std::vector<std::string> behavior_files;  // of its behavior's positions

@@ -1,6 +1,7 @@
 // `expect` of a scenario: conditions on runs, compiled against the behavior's signals.
 #include <fmt/format.h>
 
+#include "behaviors/expression/statistics.h"
 #include "core/units/units.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"
@@ -10,21 +11,23 @@ namespace {
 
 using core::YamlNode;
 
-// The signal that holds a statistic, added on first use.
-int reduction_signal(ScenarioDescription& scenario, std::string_view function, int signal) {
+// The signal that holds a statistic, made at its first use.
+int statistic_signal(ScenarioDescription& scenario, const behaviors::Statistic& statistic,
+                     bool magnitude, int signal) {
   const core::SignalInfo of = scenario.signals.info(signal);
-  const bool count = function == "count";
-  const std::string name = fmt::format("{} {}", function, of.name);
-  const int value = scenario.signals.add(name, count ? core::kNone : of.dimension, "of a run");
-  for (const Reduction& known : scenario.reductions) {
+  const std::string name = fmt::format("{}{} {}", statistic.name, magnitude ? " abs" : "", of.name);
+  const int value =
+      scenario.signals.add(name, statistic.counts ? core::kNone : of.dimension, "of a run");
+  for (const SignalStatistic& known : scenario.statistics) {
     if (known.value == value) return value;
   }
-  scenario.reductions.push_back({std::string(function), signal, value});
+  scenario.statistics.push_back({&statistic, magnitude, signal, value});
   return value;
 }
 
-// Compiles a condition. `whole`: it is judged over a time window, so that statistics are allowed.
-int compile_condition(ScenarioContext& context, const YamlNode& node, bool whole) {
+// A condition. `statistics`: those that it may use, added to; nullptr: it is of one tick.
+using UsedStatistics = std::vector<const behaviors::Statistic*>;
+int compile_condition(ScenarioContext& context, const YamlNode& node, UsedStatistics* statistics) {
   if (!node.is_scalar() || node.scalar.empty()) {
     core::report_expected(node, "a condition", context.diagnostics);
     return -1;
@@ -37,9 +40,10 @@ int compile_condition(ScenarioContext& context, const YamlNode& node, bool whole
   scope.find_state = [&context](std::string_view name, std::string& why) {
     return context.names->find_target(0, name, why);
   };
-  if (whole) {
-    scope.find_reduction = [&scenario](std::string_view function, int signal) {
-      return reduction_signal(scenario, function, signal);
+  if (statistics != nullptr) {
+    scope.find_statistic = [&](const behaviors::Statistic& statistic, bool magnitude, int signal) {
+      statistics->push_back(&statistic);
+      return statistic_signal(scenario, statistic, magnitude, signal);
     };
   }
   const std::size_t skip = core::is_expression(node) ? 1 : 0;
@@ -131,12 +135,31 @@ void read_end(ScenarioContext& context, const YamlNode& node, Expectation& expec
   for (const YamlNode& item : node.items) take(item);
 }
 
+// A statistic that keeps its samples has no value over more than kMostKeptSamples of them.
+void require_room(ScenarioContext& context, const YamlNode& node, const Expectation& expectation,
+                  const UsedStatistics& statistics) {
+  if (context.scenario.behavior == nullptr || !context.scenario.behavior->has_robot) return;
+  const double end = expectation.to.value_or(context.scenario.duration);
+  const double ticks = (end - expectation.from) / context.scenario.behavior->robot.period_s();
+  for (const behaviors::Statistic* statistic : statistics) {
+    if (!statistic->keeps_samples || ticks <= static_cast<double>(behaviors::kMostKeptSamples))
+      continue;
+    context.error(
+        node.mark, "out-of-range",
+        fmt::format("{}() is of at most {} ticks, these are {:.0f}: give it a shorter time "
+                    "with 'between'",
+                    statistic->name, behaviors::kMostKeptSamples, ticks));
+  }
+}
+
 void read_expectation(ScenarioContext& context, const YamlNode& node) {
   Expectation expectation;
+  UsedStatistics statistics;
   expectation.mark = node.mark;
   if (!node.is_map()) {
     expectation.text = node.scalar;
-    expectation.expression = compile_condition(context, node, true);
+    expectation.expression = compile_condition(context, node, &statistics);
+    require_room(context, node, expectation, statistics);
     context.scenario.expectations.push_back(std::move(expectation));
     return;
   }
@@ -144,12 +167,12 @@ void read_expectation(ScenarioContext& context, const YamlNode& node) {
   expect_one_of(context, node, {"that", "never", "sequence", "end"});
   if (const YamlNode* that = node.find("that")) {
     expectation.text = that->scalar;
-    expectation.expression = compile_condition(context, *that, true);
+    expectation.expression = compile_condition(context, *that, &statistics);
   }
   if (const YamlNode* never = node.find("never")) {
     expectation.kind = Expectation::Kind::never;
     expectation.text = never->scalar;
-    expectation.expression = compile_condition(context, *never, false);
+    expectation.expression = compile_condition(context, *never, nullptr);
   }
   if (const YamlNode* sequence = node.find("sequence")) {
     read_sequence(context, *sequence, expectation);
@@ -164,6 +187,7 @@ void read_expectation(ScenarioContext& context, const YamlNode& node) {
     }
   }
   read_times(context, node, expectation);
+  require_room(context, node, expectation, statistics);
   context.scenario.expectations.push_back(std::move(expectation));
 }
 

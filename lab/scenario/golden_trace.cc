@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
 
+#include "core/text/whole_file.h"
 #include "core/units/units.h"
 
 namespace footfall::lab {
@@ -79,25 +79,20 @@ GoldenTrace read_golden(const std::string& path) {
 }
 
 void write_golden(const std::string& path, const GoldenSpec& spec, const GoldenTrace& trace) {
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << "time,state";
-    for (const std::string& name : trace.signals) out << ',' << name;
-    out << '\n';
-    for (const GoldenRow& row : trace.rows) {
-      out << fmt::format("{:.4f},{}", row.time, row.state);
-      for (std::size_t k = 0; k < row.values.size(); ++k) {
-        out << ',';
-        if (!std::isnan(row.values[k])) {
-          out << fmt::format("{:.{}f}", row.values[k], decimals(spec.signals[k].tolerance));
-        }
+  std::string text = "time,state";
+  for (const std::string& name : trace.signals) text += ',' + name;
+  text += '\n';
+  for (const GoldenRow& row : trace.rows) {
+    text += fmt::format("{:.4f},{}", row.time, row.state);
+    for (std::size_t k = 0; k < row.values.size(); ++k) {
+      text += ',';
+      if (!std::isnan(row.values[k])) {
+        text += fmt::format("{:.{}f}", row.values[k], decimals(spec.signals[k].tolerance));
       }
-      out << '\n';
     }
-    if (!out.flush()) throw std::runtime_error("cannot write '" + temporary + "'");
+    text += '\n';
   }
-  std::filesystem::rename(temporary, path);
+  core::write_whole_file(path, text);
 }
 
 std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,

@@ -188,9 +188,10 @@ std::vector<double> read_values(ScenarioContext& context, const YamlNode& node,
   return values;
 }
 
-// Parameters and gains by name; a live edit may change only live parameters.
-std::vector<NewValues> read_changes(ScenarioContext& context, const YamlNode& node, bool edit) {
-  std::vector<NewValues> changes;
+// Parameters and gains by name; a live edit changes only what is live.
+std::vector<behaviors::SlotValue> read_changes(ScenarioContext& context, const YamlNode& node,
+                                               bool edit) {
+  std::vector<behaviors::SlotValue> changes;
   if (!core::expect_map(node, "new values by name: {NAME: VALUE}", context.diagnostics)) return {};
   if (node.entries.empty()) context.error(node.mark, "empty-value", "nothing is changed");
   if (context.names == nullptr) return {};
@@ -217,7 +218,10 @@ std::vector<NewValues> read_changes(ScenarioContext& context, const YamlNode& no
       info.name = entry.key;
       info.size = 1;
     }
-    changes.push_back({parameter, read_values(context, entry.value, info), std::max(component, 0)});
+    int slot = info.slot + std::max(component, 0);
+    for (const double value : read_values(context, entry.value, info)) {
+      changes.push_back({slot++, value});
+    }
   }
   return changes;
 }

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <stdexcept>
+
+#include "core/text/whole_file.h"
 
 namespace footfall::lab {
 namespace {
@@ -144,15 +145,7 @@ std::vector<Blessing> blessings(const Suite& suite) {
 }
 
 void bless(const Blessing& blessing) {
-  const std::string part = blessing.to + ".part";
-  std::error_code error;
-  fs::copy_file(blessing.from, part, fs::copy_options::overwrite_existing, error);
-  if (!error) fs::rename(part, blessing.to, error);
-  if (error) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    throw std::runtime_error("cannot write '" + blessing.to + "': " + error.message());
-  }
+  core::write_whole_file(blessing.to, core::read_whole_file(blessing.from));
 }
 
 }  // namespace footfall::lab

@@ -10,19 +10,19 @@
 
 namespace footfall::apps {
 
-const WantedValue* TuneOutbox::find_wanted(int entry) const {
+const TuneOutbox::Wanted* TuneOutbox::find_wanted(int entry) const {
   const auto in = [entry](const Ask& ask) {
-    const auto found = std::ranges::find(ask.wanted, entry, &WantedValue::entry);
+    const auto found = std::ranges::find(ask.wanted, entry, &Wanted::entry);
     return found == ask.wanted.end() ? nullptr : &*found;
   };
   for (auto ask = queue_.rbegin(); ask != queue_.rend(); ++ask) {
-    if (const WantedValue* wanted = in(*ask)) return wanted;
+    if (const Wanted* wanted = in(*ask)) return wanted;
   }
   return sent_ ? in(*sent_) : nullptr;
 }
 
 double TuneOutbox::expected(const TuneModel& model, int entry) const {
-  const WantedValue* wanted = find_wanted(entry);
+  const Wanted* wanted = find_wanted(entry);
   return wanted != nullptr ? wanted->value : model.value_target(model.entries[at(entry)].slot);
 }
 
@@ -33,8 +33,8 @@ void TuneOutbox::want(const TuneModel& model, int entry, double value, double ov
   if (queue_.empty() || queue_.back().wanted.empty() || queue_.back().over != over) {
     queue_.push_back({{}, {}, over});
   }
-  std::vector<WantedValue>& wanted = queue_.back().wanted;
-  const auto there = std::ranges::find(wanted, entry, &WantedValue::entry);
+  std::vector<Wanted>& wanted = queue_.back().wanted;
+  const auto there = std::ranges::find(wanted, entry, &Wanted::entry);
   if (there != wanted.end()) {
     there->value = value;
   } else {
@@ -50,8 +50,8 @@ void TuneOutbox::ask(footfall_lcm::request_t request) {
 bool TuneOutbox::prepare(const TuneModel& model, Ask& ask) {
   if (!ask.wanted.empty()) {
     std::vector<footfall_lcm::change_t> changes;
-    std::vector<WantedValue> kept;
-    for (const WantedValue& wanted : ask.wanted) {
+    std::vector<Wanted> kept;
+    for (const Wanted& wanted : ask.wanted) {
       const TuneEntry& entry = model.entries[at(wanted.entry)];
       const double target = model.value_target(entry.slot);
       if (target != wanted.seen) {

@@ -12,12 +12,6 @@
 
 namespace footfall::apps {
 
-// A new value of a slot, and the target value displayed when it was requested.
-struct WantedValue {
-  int entry = 0;  // into TuneModel::entries
-  double seen = 0.0, value = 0.0;
-};
-
 class TuneOutbox {
  public:
   // Target value of an entry after all requests of this user, else the current target.
@@ -42,12 +36,17 @@ class TuneOutbox {
   bool empty() const { return queue_.empty() && !sent_; }
 
  private:
+  // A new value, and the target that the person saw when they asked for it.
+  struct Wanted {
+    int entry = 0;  // into TuneModel::entries
+    double seen = 0.0, value = 0.0;
+  };
   struct Ask {
     footfall_lcm::request_t request;
-    std::vector<WantedValue> wanted;  // empty if the request was given as a whole
+    std::vector<Wanted> wanted;  // empty: the request is whole
     double over = 0.0;
   };
-  const WantedValue* find_wanted(int entry) const;
+  const Wanted* find_wanted(int entry) const;
   bool prepare(const TuneModel& model, Ask& ask);
 
   std::deque<Ask> queue_;

@@ -7,18 +7,6 @@
 #include "core/index.h"
 
 namespace footfall::behaviors {
-namespace {
-
-int parameter_of_slot(const Behavior& behavior, int slot) {
-  for (std::size_t k = 0; k < behavior.parameters.size(); ++k) {
-    const ParameterInfo& info = behavior.parameters[k];
-    if (slot >= info.slot && slot < info.slot + info.size) return static_cast<int>(k);
-  }
-  return -1;
-}
-
-}  // namespace
-
 Dependence dependence_of(const Behavior& behavior, int expression) {
   Dependence found;
   if (expression < 0) return found;
@@ -31,7 +19,7 @@ Dependence dependence_of(const Behavior& behavior, int expression) {
     } else if (step.op == Op::entry) {
       found.entry = true;
     } else if (step.op == Op::parameter) {
-      const int index = parameter_of_slot(behavior, step.index);
+      const int index = behavior.parameter_of_slot(step.index);
       if (index < 0) continue;
       found.variable |= behavior.parameters[at(index)].variable;
       auto& list = found.parameters;

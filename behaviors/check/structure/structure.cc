@@ -12,10 +12,8 @@ namespace footfall::behaviors {
 namespace {
 
 bool is_variable(const Behavior& behavior, int slot) {
-  return std::any_of(behavior.parameters.begin(), behavior.parameters.end(),
-                     [&](const ParameterInfo& info) {
-                       return info.variable && slot >= info.slot && slot < info.slot + info.size;
-                     });
+  const int parameter = behavior.parameter_of_slot(slot);
+  return parameter >= 0 && behavior.parameters[at(parameter)].variable;
 }
 
 }  // namespace

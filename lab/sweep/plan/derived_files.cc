@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "core/text/dotted_name.h"
+#include "core/text/whole_file.h"
 #include "core/yaml_text/write.h"
 #include "lab/sweep/plan/yaml_build.h"
 
@@ -162,12 +162,7 @@ std::string SweepFiles::write(const YamlNode& root, const char* kind) {
   if (!written_.insert(path).second) return path;
   std::error_code error;
   fs::create_directories(folder_, error);
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error("cannot write '" + part + "'");
-  fs::rename(part, path);
+  core::write_whole_file(path, text);
   return path;
 }
 

@@ -116,8 +116,9 @@ Section sweep_summary_section(const SweepTable& table) {
   double cpu = 0.0;
   for (const SweepRow& row : table.rows) cpu += row.result.cpu_time;
   section.html = "<div class=\"cards\">";
-  section.html += sweep_card("runs", fmt::format("{} of {}", done, table.identity.runs),
-                             done < table.identity.runs ? "repeat the command to continue" : "all done");
+  section.html +=
+      sweep_card("runs", fmt::format("{} of {}", done, table.identity.runs),
+                 done < table.identity.runs ? "repeat the command to continue" : "all done");
   section.html +=
       sweep_card("passed", share.of == 0 ? "–" : fmt::format("{:.1f} %", 100 * share.value()),
                  fmt::format("{} of {}; 95 % interval {:.1f} to {:.1f} %", share.good, share.of,

@@ -30,9 +30,11 @@ struct DooredChart {
     machine->tick(now++, measure);
   }
   int parameter(const char* name) const { return behavior->find_parameter(name); }
+  int slot(const char* name) const {
+    return behavior->parameters[static_cast<std::size_t>(parameter(name))].slot;
+  }
   double value(const char* name, int component = 0) const {
-    const auto& info = behavior->parameters[static_cast<std::size_t>(parameter(name))];
-    return machine->parameters()[static_cast<std::size_t>(info.slot + component)];
+    return machine->parameters()[static_cast<std::size_t>(slot(name) + component)];
   }
   std::string state() const {
     return behavior->states[static_cast<std::size_t>(machine->active_atomic().front())].name;
@@ -69,9 +71,12 @@ machine:
 class EditDoor : public testing::Test, public DooredChart {
  protected:
   EditDoor() : DooredChart(kEdited, 4) {}
-  engine::EditBatch edit(const char* name, std::vector<double> values, double over = 0.0) const {
+  engine::EditBatch edit(const char* name, const std::vector<double>& values,
+                         double over = 0.0) const {
     engine::EditBatch batch;
-    batch.values.push_back({parameter(name), -1, std::move(values)});
+    std::vector<std::string> reasons;
+    engine::add_values(*behavior, {parameter(name), -1}, values, batch.values, reasons);
+    EXPECT_TRUE(reasons.empty());
     batch.over = over;
     return batch;
   }

@@ -104,8 +104,7 @@ TEST_F(Workshop, AHardEditReplaysWithTheLimitsThatItHad) {
     ASSERT_GE(height, 0);
     const auto& info = rig.behavior->parameters[static_cast<std::size_t>(height)];
     const double value = rig.behavior->values[static_cast<std::size_t>(info.slot)];
-    batch.values.push_back(
-        {height, -1, std::vector<double>(static_cast<std::size_t>(info.size), value / 3.0)});
+    for (int k = 0; k < info.size; ++k) batch.values.push_back({info.slot + k, value / 3.0});
     EXPECT_EQ(rig.loop->edits().submit(batch).reasons, std::vector<std::string>{});
   };
   spec.events.push_back(event);

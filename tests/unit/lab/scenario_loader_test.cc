@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "core/index.h"
 #include "lab/scenario/loader.h"
 
 namespace footfall::lab {
@@ -102,11 +103,14 @@ TEST_F(ScenarioLoader, TheScriptSaysWhenAndWhat) {
   EXPECT_EQ(script[1].moment.phase, 0.5);
   EXPECT_EQ(paths_of(scenario, script[1].moment.states),
             (std::vector<std::string>{"step.right_foot.lift", "step.left_foot.lift"}));
-  ASSERT_EQ(script[2].edit.size(), 2U);
-  EXPECT_EQ(script[2].edit[0].values, std::vector<double>{0.16});
-  EXPECT_EQ(script[2].edit[1].values, (std::vector<double>{230.0, 240.0, 410.0}));
+  const auto values_of = [](const std::vector<behaviors::SlotValue>& changes) {
+    std::vector<double> values;
+    for (const auto& change : changes) values.push_back(change.value);
+    return values;
+  };
+  EXPECT_EQ(values_of(script[2].edit), (std::vector<double>{0.16, 230.0, 240.0, 410.0}));
   EXPECT_EQ(script[2].over, 0.5);
-  EXPECT_EQ(script[3].edit[0].values, (std::vector<double>{1.0, 0.0}));
+  EXPECT_EQ(values_of(script[3].edit), (std::vector<double>{1.0, 0.0}));
   EXPECT_EQ(script[3].raise, scenario.behavior->find_event("go_to"));
   EXPECT_EQ(script[4].fault, InjectedFault::mocap_dropout);
   EXPECT_EQ(script[4].duration, 2.0);
@@ -117,13 +121,10 @@ TEST_F(ScenarioLoader, AnEditMayChangeOneValueOfAParameter) {
       "scenario: 1\nbehavior: walk.yaml\nfor: 20 s\n"
       "script: [{at: 1 s, edit: {goal.y: 30 cm, goal: [1 m, 2 m]}}]\n");
   EXPECT_EQ(diagnostics_.to_string(), "");
-  const auto& edit = scenario.script.at(0).edit;
-  ASSERT_EQ(edit.size(), 2U);
-  EXPECT_EQ(edit[0].parameter, edit[1].parameter);
-  EXPECT_EQ(edit[0].first, 1);
-  EXPECT_EQ(edit[0].values, std::vector<double>{0.3});
-  EXPECT_EQ(edit[1].first, 0);
-  EXPECT_EQ(edit[1].values, (std::vector<double>{1.0, 2.0}));
+  const auto& behavior = *scenario.behavior;
+  const int goal = behavior.parameters[at(behavior.find_parameter("goal"))].slot;
+  EXPECT_EQ(scenario.script.at(0).edit,
+            (std::vector<behaviors::SlotValue>{{goal + 1, 0.3}, {goal, 1.0}, {goal + 1, 2.0}}));
 }
 TEST_F(ScenarioLoader, ExpectationsAreCompiledAgainstTheSignalsOfTheRun) {
   ScenarioDescription scenario = load(kScenario);
@@ -137,9 +138,10 @@ TEST_F(ScenarioLoader, ExpectationsAreCompiledAgainstTheSignalsOfTheRun) {
             (std::vector<std::string>{"step.right_foot.lift", "step.right_foot.land",
                                       "step.left_foot.dual"}));
   EXPECT_EQ(expectations[4].within, 1.0);
-  ASSERT_EQ(scenario.reductions.size(), 2U);
-  EXPECT_EQ(scenario.reductions[0].function, "max abs");
-  EXPECT_EQ(scenario.signals.info(scenario.reductions[0].signal).name, "base.rpy.pitch");
+  ASSERT_EQ(scenario.statistics.size(), 2U);
+  EXPECT_EQ(scenario.statistics[0].statistic->name, "max");
+  EXPECT_TRUE(scenario.statistics[0].magnitude);
+  EXPECT_EQ(scenario.signals.info(scenario.statistics[0].signal).name, "base.rpy.pitch");
   behaviors::EvaluationContext context;
   const auto judge = [&](int expectation, int signal, double value) {
     scenario.signals[signal] = value;
@@ -150,8 +152,8 @@ TEST_F(ScenarioLoader, ExpectationsAreCompiledAgainstTheSignalsOfTheRun) {
   };
   EXPECT_EQ(judge(0, scenario.signals.find("steps"), 299.0), 0.0);
   EXPECT_EQ(judge(0, scenario.signals.find("steps"), 300.0), 1.0);
-  EXPECT_EQ(judge(1, scenario.reductions[0].value, 0.04), 1.0);
-  EXPECT_EQ(judge(1, scenario.reductions[0].value, 0.06), 0.0);
+  EXPECT_EQ(judge(1, scenario.statistics[0].value, 0.04), 1.0);
+  EXPECT_EQ(judge(1, scenario.statistics[0].value, 0.06), 0.0);
 }
 TEST_F(ScenarioLoader, AScenarioInheritsFromItsBase) {
   std::ofstream(folder_ / "base.yaml") << kScenario;
@@ -213,6 +215,18 @@ TEST_F(ScenarioLoader, KeysThatDoNotFitTogetherAreRefused) {
             "4:27: error: 'contact.left_foot.touchdown' is raised by the engine only\n");
   EXPECT_EQ(problems_of("expect: [{never: rms(com.pos.z) < 1 m}]"),
             "4:18: error: unknown function 'rms'\n");
+}
+// 1500 ticks a second.
+TEST_F(ScenarioLoader, AStatisticThatKeepsItsSamplesIsOfAMillionTicksAtMost) {
+  const std::string head = "scenario: 1\nbehavior: walk.yaml\nfor: 700 s\n";
+  load(head + "expect: [p95(com.pos.z) < 2 m]\n");
+  EXPECT_EQ(diagnostics_.to_string(),
+            path() +
+                ":4:10: error: p95() is of at most 1000000 ticks, these are 1050000: give it a "
+                "shorter time with 'between'\n");
+  load(head +
+       "expect: [{that: p95(com.pos.z) < 2 m, between: [40 s, 700 s]}, rms(com.pos.z) < 2 m]\n");
+  EXPECT_EQ(diagnostics_.to_string(), "");
 }
 TEST_F(ScenarioLoader, AGoldenTraceAndAnEndAreChecked) {
   EXPECT_EQ(problems_of("golden: {tolerance: {com.pos.zz: 2 mm}}"),

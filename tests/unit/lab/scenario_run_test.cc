@@ -204,7 +204,7 @@ TEST_F(ScenarioRunTest, WithinAsksForOneTick) {
   EXPECT_TRUE(judge("{that: in(b), after: 200 ms, within: 200 ms}").passed);
 }
 // The clock's signal over ticks 150..300: 0.1 s to 0.2 s.
-TEST_F(ScenarioRunTest, ReductionsAreOfTheirTimeAlone) {
+TEST_F(ScenarioRunTest, StatisticsAreOfTheirTimeAlone) {
   const std::string window = ", between: [100 ms, 200 ms]}";
   const ExpectationOutcome max = judge("{that: max(steps) < 0" + window);
   EXPECT_FALSE(max.passed);
@@ -218,6 +218,12 @@ TEST_F(ScenarioRunTest, ReductionsAreOfTheirTimeAlone) {
           window +
           "\n"
           "  - {that: rms(contact.left_foot) == 1" +
+          window +
+          "\n"
+          "  - {that: min(contact.left_foot) == 1" +
+          window +
+          "\n"
+          "  - {that: p95(contact.left_foot) == 1" +
           window +
           "\n"
           "  - {that: count(contact.left_foot) == 1" +

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "behaviors/expression/statistics.h"
+
 namespace footfall::tests {
 namespace {
 
@@ -13,6 +15,7 @@ using behaviors::ExpressionError;
 using behaviors::ExpressionPool;
 using behaviors::ExpressionScope;
 using behaviors::ParameterInfo;
+using behaviors::Statistic;
 using core::Dimension;
 
 // Two signals, three parameters, and a state that has been active for 30 ticks of 1 ms.
@@ -225,19 +228,20 @@ TEST_F(Expression, ASingleChoiceOfConditionsKeepsItsOtherBranchUnread) {
 TEST_F(Expression, UnitsToUnheardOfPowersAreRefused) {
   EXPECT_EQ(error_of("((2 m)^9)^9"), "10: no quantity has a unit to the power of more than 12");
 }
-TEST_F(Expression, ReductionsOverARunAreThereOnlyWhereTheyHaveAMeaning) {
+TEST_F(Expression, StatisticsOverARunAreKnownOnlyWhereTheyHaveAMeaning) {
   EXPECT_EQ(error_of("rms(com.pos.z)"), "0: unknown function 'rms'");
-  scope_.find_reduction = [&](std::string_view name, int signal) {
-    return name == "rms" && signal == height_ ? contact_ : -1;
+  scope_.find_statistic = [&](const Statistic& statistic, bool magnitude, int signal) {
+    return statistic.name == "rms" && !magnitude && signal == height_ ? contact_ : -1;
   };
   EXPECT_EQ(value("rms(com.pos.z) < 2 m"), 1.0);
   EXPECT_EQ(error_of("rms(com.pos.z) < 2 s"), "17: cannot compare a length and a time");
   EXPECT_EQ(value("max(com.pos.z, 2 m)", core::kLength), 2.0);
-  scope_.find_reduction = [&](std::string_view name, int signal) {
-    return name == "max abs" && signal == height_ ? contact_ : -1;
+  scope_.find_statistic = [&](const Statistic& statistic, bool magnitude, int signal) {
+    return statistic.name == "max" && magnitude && signal == height_ ? contact_ : -1;
   };
   EXPECT_EQ(value("max(abs(com.pos.z)) < 2 m"), 1.0);
   EXPECT_EQ(error_of("rms(abs(com.pos.z))"), "0: no rms() of this signal");
+  EXPECT_EQ(value("min(com.pos.z, 5 cm)", core::kLength), 0.05);
 }
 TEST_F(Expression, OnlyExpressionsWithoutNamesAreConstant) {
   ExpressionError error;

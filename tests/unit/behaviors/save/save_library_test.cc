@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using behaviors::Behavior;
-using behaviors::SavedValue;
+using behaviors::NamedValue;
 
 int rounds(int few) {
   const char* many = std::getenv("FOOTFALL_SAVE_ROUNDS");
@@ -30,8 +30,8 @@ double uniform(Random& random, double from, double to) {
 }
 
 // Within the range; now and then a number as people write them, now and then all axes alike.
-SavedValue random_value(const behaviors::ParameterInfo& info, Random& random) {
-  SavedValue value{info.name, {}};
+NamedValue random_value(const behaviors::ParameterInfo& info, Random& random) {
+  NamedValue value{info.name, {}};
   const bool alike = random() % 3 == 0;
   for (int k = 0; k < info.size; ++k) {
     double number = uniform(random, info.min, info.max);
@@ -49,9 +49,9 @@ std::vector<std::uint64_t> bits(const std::vector<double>& values) {
 
 // What a behavior's values must be, bit for bit.
 std::vector<std::uint64_t> expected_bits(const Behavior& before,
-                                         const std::vector<SavedValue>& values) {
+                                         const std::vector<NamedValue>& values) {
   std::vector<double> expected = before.values;
-  for (const SavedValue& value : values) {
+  for (const NamedValue& value : values) {
     const auto& info =
         before.parameters.at(static_cast<std::size_t>(before.find_parameter(value.name)));
     std::ranges::copy(value.values, expected.begin() + info.slot);
@@ -115,7 +115,7 @@ TEST_F(SaveLibrary, AllLiveValuesOfEveryFileReadBackBitForBitAndNothingElseChang
     for (int round = 0; round < rounds(2); ++round) {
       copy_shipped();
       const auto before = load_file(file(name));
-      std::vector<SavedValue> values;
+      std::vector<NamedValue> values;
       for (const auto& info : before->parameters) {
         if (info.live) values.push_back(random_value(info, random));
       }
@@ -140,13 +140,13 @@ TEST_F(SaveLibrary, AllLiveValuesOfEveryFileFindPlaceInAnOverlay) {
     const auto before = load_file(file(name));
     const std::string overlay = fs::path(name).parent_path().string() + "/over.yaml";
     fs::remove(file(overlay));
-    std::vector<SavedValue> all;
+    std::vector<NamedValue> all;
     for (const auto& info : before->parameters) {
       if (info.live) all.push_back(random_value(info, random));
     }
     // In two steps: the second one edits what the first has made.
     const auto half = static_cast<std::ptrdiff_t>(all.size() / 2);
-    const std::vector<SavedValue> some(all.begin(), all.begin() + half);
+    const std::vector<NamedValue> some(all.begin(), all.begin() + half);
     for (const auto& values : {some, all}) {
       const auto made = plan(name, values, overlay);
       ASSERT_FALSE(made.refused()) << name << ": " << made.refusals.front();
@@ -232,10 +232,10 @@ class SaveLayouts : public SaveLibrary {
     fs::remove(file("over.yaml"));
     const auto before = load_file(file("b.yaml"));
     if (before == nullptr || before->parameters.empty()) return false;
-    std::vector<SavedValue> values;
+    std::vector<NamedValue> values;
     for (const auto& info : before->parameters) {
       if (random() % 3 == 0) continue;
-      SavedValue value{info.name, {}};
+      NamedValue value{info.name, {}};
       for (int k = 0; k < info.size; ++k) value.values.push_back(uniform(random, -9.0, 9.0));
       values.push_back(value);
     }

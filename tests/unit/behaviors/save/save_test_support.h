@@ -31,7 +31,7 @@ class SaveTest : public testing::Test {
   }
 
   behaviors::SavePlan plan(const std::string& name,
-                           const std::vector<behaviors::SavedValue>& values,
+                           const std::vector<behaviors::NamedValue>& values,
                            const std::string& overlay = "") const {
     core::Diagnostics diagnostics;
     auto plan = behaviors::plan_save(file(name), options_for_tests(), values,
@@ -40,7 +40,7 @@ class SaveTest : public testing::Test {
     return plan;
   }
   // What refuses a plan, without the folder's name; empty: nothing.
-  std::string refusal(const std::string& name, const std::vector<behaviors::SavedValue>& values,
+  std::string refusal(const std::string& name, const std::vector<behaviors::NamedValue>& values,
                       const std::string& overlay = "") const {
     std::string text;
     const auto refused = plan(name, values, overlay);
@@ -54,7 +54,7 @@ class SaveTest : public testing::Test {
   }
   // Saves into file b.yaml with this text; what it then holds, or what refused it.
   std::string saved(const std::string& text,
-                    const std::vector<behaviors::SavedValue>& values) const {
+                    const std::vector<behaviors::NamedValue>& values) const {
     put("b.yaml", text);
     const auto made = plan("b.yaml", values);
     if (made.refused()) return made.refusals.front();

@@ -46,26 +46,24 @@ TEST_F(EditDoor, AnEditIsAppliedAtTheStartOfTheNextTickAndAnswered) {
 
 TEST_F(EditDoor, EveryReasonIsGivenAndNothingOfABadBatchIsApplied) {
   EditBatch batch = edit("speed", {11.0});
-  batch.values.push_back({parameter("goal"), -1, {1.0}});
-  batch.values.push_back({parameter("goal"), 1, {std::nan("")}});
-  batch.values.push_back({parameter("fixed"), -1, {2.0}});
-  batch.values.push_back({parameter("counted"), -1, {2.0}});
-  batch.values.push_back({99, -1, {2.0}});
-  batch.values.push_back({parameter("goal"), 2, {2.0}});
+  batch.values.push_back({slot("goal") + 1, std::nan("")});
+  batch.values.push_back({slot("fixed"), 2.0});
+  batch.values.push_back({slot("counted"), 2.0});
+  batch.values.push_back({99, 2.0});
+  batch.values.push_back({slot("goal") + 1, 2.0});
   batch.events = {behavior->find_event("parameter.changed.speed"), 12345};
   batch.over = -1.0;
   batch.revision = 3;
-  const auto count = behavior->parameters.size();
+  const auto count = behavior->values.size();
   EXPECT_EQ(refusal(*behavior, batch),
             "speed: 11 m/s is out of its range, 0 m/s to 10 m/s\n"
-            "goal: expected 2 values, got 1\n"
             "goal[1]: nan is not a finite number\n"
             "fixed: not live; give it a range and 'live: true'\n"
             "counted: not live, the behavior's actions set it\n"
-            "no parameter 99: the behavior has " +
+            "no value 99: the behavior has " +
                 std::to_string(count) +
                 "\n"
-                "goal: no component 2, it has 2 values\n"
+                "goal: given twice\n"
                 "parameter.changed.speed: raised by the engine only\n"
                 "no event 12345: the behavior has " +
                 std::to_string(behavior->events.size()) +
@@ -80,11 +78,30 @@ TEST_F(EditDoor, EveryReasonIsGivenAndNothingOfABadBatchIsApplied) {
   EXPECT_EQ(refusal(*behavior, {}), "nothing is changed or raised\n");
 }
 
+TEST_F(EditDoor, OnlyAsManyValuesAsAParameterHasAreAdded) {
+  std::vector<behaviors::SlotValue> values;
+  std::vector<std::string> reasons;
+  const auto add = [&](const char* name, int component, const std::vector<double>& given) {
+    engine::add_values(*behavior, {parameter(name), component}, given, values, reasons);
+  };
+  add("goal", -1, {1.0});
+  add("goal", 2, {1.0});
+  add("goal", 0, {});
+  EXPECT_EQ(reasons, (std::vector<std::string>{"goal: expected 2 values, got 1",
+                                               "goal: no component 2, it has 2 values",
+                                               "goal: expected 1 value, got 0"}));
+  EXPECT_TRUE(values.empty());
+  add("goal", 1, {7.0});
+  add("goal", -1, {8.0, 9.0});
+  EXPECT_EQ(values, (std::vector<behaviors::SlotValue>{
+                        {slot("goal") + 1, 7.0}, {slot("goal"), 8.0}, {slot("goal") + 1, 9.0}}));
+}
+
 TEST_F(EditDoor, AScenariosSetMayWriteWhatIsNotLiveButOnlyInItsRange) {
   EditBatch batch = edit("fixed", {2.5});
   batch.source = EditSource::set;
   EXPECT_EQ(refusal(*behavior, batch), "");
-  batch.values[0].values[0] = 3.5;
+  batch.values[0].value = 3.5;
   EXPECT_EQ(refusal(*behavior, batch), "fixed: 3.5 s is out of its range, 1 s to 3 s\n");
 }
 
@@ -111,7 +128,7 @@ TEST_F(EditDoor, ALaterEditTakesItsSlotFromARampAndLeavesTheOthers) {
   tick();
   tick();
   EditBatch later;
-  later.values.push_back({parameter("goal"), 0, {0.0}});
+  later.values.push_back({slot("goal"), 0.0});
   later.over = 2e-3;
   ASSERT_TRUE(door->submit(later).accepted());
   tick();  // the old ramp brought x to 2 in this tick; the new one starts there

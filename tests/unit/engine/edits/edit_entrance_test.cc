@@ -133,7 +133,7 @@ TEST_F(EditEntrance, TwoThreadsSubmitAtOnceAndNothingIsLost) {
         last = 1e-3 * ++answered;
       }
       EditBatch batch;
-      batch.values.push_back({parameter("goal"), static_cast<int>(who), {1e-3 * (submitted + 1)}});
+      batch.values.push_back({slot("goal") + static_cast<int>(who), 1e-3 * (submitted + 1)});
       if (submitted < kEdits && entrance.submit(batch).accepted()) ++submitted;
     }
     good[who] = in_order;

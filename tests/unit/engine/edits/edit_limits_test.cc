@@ -31,11 +31,8 @@ EditBatch edit(const behaviors::Behavior& behavior, const char* name, double val
                EditSource source, double over = 0.0) {
   EditBatch batch;
   const int parameter = behavior.find_parameter(name);
-  batch.values.push_back(
-      {parameter, -1,
-       std::vector<double>(
-           static_cast<std::size_t>(behavior.parameters[static_cast<std::size_t>(parameter)].size),
-           value)});
+  const behaviors::ParameterInfo& info = behavior.parameters[static_cast<std::size_t>(parameter)];
+  for (int k = 0; k < info.size; ++k) batch.values.push_back({info.slot + k, value});
   batch.source = source;
   batch.over = over;
   return batch;

@@ -88,10 +88,10 @@ TEST_F(LiveServer, EveryReasonIsToldAtOnceAndNothingIsDone) {
   request.revision = 3;
   EXPECT_EQ(reasons(request),
             "no parameter 'lift_tme' (did you mean 'lift_time'?)\n"
+            "goal: no component 7, it has 2 values\n"
             "no event 'goo' (did you mean 'go'?)\n"
             "revision 3 was expected, 0 is in force: read it again\n"
             "lift_time: 0.5 s is out of its range, 0.08 s to 0.4 s\n"
-            "goal: no component 7, it has 2 values\n"
             "goal[0]: nan is not a finite number\n"
             "fixed: not live; give it a range and 'live: true'\n"
             "error.execution: raised by the engine only\n"

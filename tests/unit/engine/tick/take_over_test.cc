@@ -82,7 +82,8 @@ std::string state_of(const ControlLoop& loop) {
 
 void edit(ControlLoop& loop, const char* name, double value) {
   engine::EditBatch batch;
-  batch.values.push_back({loop.behavior().find_parameter(name), -1, {value}});
+  const int parameter = loop.behavior().find_parameter(name);
+  batch.values.push_back({loop.behavior().parameters[at(parameter)].slot, value});
   ASSERT_TRUE(loop.edits().submit(batch).accepted());
 }
 

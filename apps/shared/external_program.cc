@@ -1,10 +1,8 @@
-// Writes output files and calls programs; see output_file.h.
-#include "apps/shared/output_file.h"
+// Spawns a program between two temporary files; see external_program.h.
+#include "apps/shared/external_program.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,7 +11,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
@@ -39,46 +36,6 @@ std::string read_all(std::FILE* file) {
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 }  // namespace
-
-void write_whole_file(const std::string& path, std::string_view text) {
-  // A symbolic link is kept: its target is replaced.
-  std::error_code ignored;
-  const std::filesystem::path real = std::filesystem::weakly_canonical(path, ignored);
-  const std::string target = ignored || real.empty() ? path : real.string();
-  if (std::filesystem::is_directory(target, ignored)) {
-    errno = EISDIR;
-    fail(path, "cannot write");
-  }
-  struct stat old {};
-  const bool there = ::stat(target.c_str(), &old) == 0;
-  if (there && ::access(target.c_str(), W_OK) != 0) fail(path, "cannot write");
-  const std::string temporary = fmt::format("{}.{}.part", target, ::getpid());
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file < 0) fail(path, "cannot write");
-  bool good = core::write_all(file, text);
-  if (good && there) good = ::fchmod(file, old.st_mode & 07777) == 0;
-  if (good) good = ::fsync(file) == 0;
-  int reason = errno;
-  if (::close(file) != 0 && good) {
-    good = false;
-    reason = errno;
-  }
-  if (good && std::rename(temporary.c_str(), target.c_str()) == 0) return;
-  if (good) reason = errno;
-  ::unlink(temporary.c_str());
-  errno = reason;
-  fail(path, "cannot write");
-}
-
-std::string read_whole_file(const std::string& path) {
-  if (path == "-") return read_all(stdin);
-  errno = 0;
-  const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) fail(path, "cannot read");
-  std::string text = read_all(file.get());
-  if (std::ferror(file.get()) != 0) fail(path, "cannot read");
-  return text;
-}
 
 std::string run_program(const std::string& program, const std::string& argument,
                         std::string_view input, const std::string& package) {

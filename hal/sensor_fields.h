@@ -1,0 +1,143 @@
+// What is measured and commanded in a tick, and one table of it: the columns of the log, replay,
+// and sensors that fail on purpose derive from the table. A member without a row does not compile.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "core/limits.h"
+
+namespace footfall::hal {
+
+// Measured once a tick. Arrays are in the robot file's order; unused entries are 0.
+struct Sensors {
+  std::int64_t time_ns = 0;                                       // backend's clock at sampling
+  std::array<double, core::kMaxJoints> q{};                       // joint position, rad
+  std::array<double, core::kMaxJoints> qd{};                      // joint velocity, rad/s
+  std::array<double, core::kMaxJoints> tau{};                     // joint torque measured, N m
+  std::array<double, 3> gyro{};                                   // rad/s, IMU frame
+  std::array<double, 3> accelerometer{};                          // m/s^2, IMU frame
+  std::array<bool, core::kMaxContacts> contact{};                 // foot switch closed
+  std::array<std::array<double, 3>, core::kMaxContacts> force{};  // N, ground on robot, world
+
+  bool imu_fresh = true;    // the IMU's data are new
+  bool mocap_fresh = true;  // motion capture's are
+
+  bool has_truth = false;                  // a simulator tells the base's true state
+  std::array<double, 3> p_WB{};            // base origin, m, world
+  std::array<double, 4> q_WB{1, 0, 0, 0};  // base orientation, w x y z
+  std::array<double, 3> v_WB{};            // velocity of the base origin, m/s, world
+  std::array<double, 3> w_WB_B{};          // angular velocity, rad/s, base frame
+
+  bool body_contact = false;   // something other than a declared contact touches (simulator)
+  bool backend_fault = false;  // the backend raised a warning or reset itself (simulator)
+};
+
+// Written once a tick.
+struct Commands {
+  std::array<double, core::kMaxJoints> tau{};  // joint torque, N m
+};
+
+// Sensors that fail together: their fields then keep the last value.
+enum class SensorGroup : std::uint8_t {
+  joints,    // encoders and torque sensors
+  imu,       // gyroscope and accelerometer
+  contacts,  // foot switches and force sensors
+  mocap,     // motion capture
+  truth,     // the base's true state, of a simulator
+  backend,   // the backend's own reports
+  all,       // everything: read() reports that nothing new arrived
+  count,
+};
+
+// One number, or an array of them: by joint (kMaxJoints), by contact (kMaxContacts), x y z (3), a
+// unit quaternion w x y z (4), or an array of such arrays.
+template <typename Owner, typename Value>
+struct NumberField {
+  Value Owner::*member;
+  std::string_view name;  // stem of its columns in the log: q.JOINT, force.CONTACT.x
+  std::string_view unit;  // SI
+  SensorGroup group = SensorGroup::backend;
+  std::string_view rate = {};  // name of the field that is its derivative; empty: none
+};
+
+// A truth value, or one by contact.
+template <typename Value>
+struct FlagField {
+  Value Sensors::*member;
+  std::uint64_t bit;  // in the column `flags`; that of contact c is bit << c
+  std::string_view doc;
+  SensorGroup group;
+  bool validity = false;  // false while its group fails; else it keeps the last value, too
+};
+
+// In the order of the log's columns: new rows go to the end.
+inline constexpr std::tuple kCommandFields{
+    NumberField{&Commands::tau, "command", "N m"},
+};
+inline constexpr std::tuple kSensorFields{
+    NumberField{&Sensors::qd, "qd", "rad/s", SensorGroup::joints},
+    NumberField{&Sensors::q, "q", "rad", SensorGroup::joints, "qd"},
+    NumberField{&Sensors::tau, "tau", "N m", SensorGroup::joints},
+    NumberField{&Sensors::gyro, "gyro", "rad/s", SensorGroup::imu},
+    NumberField{&Sensors::accelerometer, "accelerometer", "m/s^2", SensorGroup::imu},
+    NumberField{&Sensors::force, "force", "N", SensorGroup::contacts},
+    NumberField{&Sensors::v_WB, "v_WB", "m/s", SensorGroup::truth},
+    NumberField{&Sensors::p_WB, "p_WB", "m", SensorGroup::truth, "v_WB"},
+    NumberField{&Sensors::q_WB, "q_WB", "", SensorGroup::truth},
+    NumberField{&Sensors::w_WB_B, "w_WB_B", "rad/s", SensorGroup::truth},
+};
+// Bit 1 is of the read as a whole: something new arrived.
+inline constexpr std::uint64_t kFreshBit = 1;
+inline constexpr std::tuple kFlagFields{
+    FlagField{&Sensors::has_truth, 2, "the base's true state is known", SensorGroup::truth, true},
+    FlagField{&Sensors::body_contact, 4, "another body touches", SensorGroup::backend},
+    FlagField{&Sensors::backend_fault, 8, "the backend has a fault", SensorGroup::backend},
+    FlagField{&Sensors::imu_fresh, 16, "the IMU's data are new", SensorGroup::imu, true},
+    FlagField{&Sensors::mocap_fresh, 32, "motion capture's data are new", SensorGroup::mocap, true},
+    FlagField{&Sensors::contact, 256, "contact c is closed", SensorGroup::contacts},
+};
+
+// Calls visit(field) for each row of a table.
+template <typename Table, typename Visit>
+constexpr void for_each_field(const Table& table, Visit&& visit) {
+  std::apply([&](const auto&... field) { (visit(field), ...); }, table);
+}
+
+namespace detail {
+
+struct Anything {
+  template <typename T>
+  constexpr operator T() const;  // NOLINT: stands for the initial value of any member
+};
+template <typename T, std::size_t... k>
+constexpr bool has_members(std::index_sequence<k...>) {
+  return requires { T{(static_cast<void>(k), Anything{})...}; };
+}
+template <typename T, std::size_t n = 64>
+constexpr std::size_t member_count() {
+  if constexpr (n == 0 || has_members<T>(std::make_index_sequence<n>())) {
+    return n;
+  } else {
+    return member_count<T, n - 1>();
+  }
+}
+template <typename... Table>
+inline constexpr std::size_t kRowCount = (std::tuple_size_v<std::remove_cvref_t<Table>> + ...);
+
+}  // namespace detail
+
+static_assert(detail::member_count<Sensors>() ==
+                  1 + detail::kRowCount<decltype(kSensorFields), decltype(kFlagFields)>,
+              "each member of Sensors but time_ns has one row in a table above");
+static_assert(detail::member_count<Commands>() == detail::kRowCount<decltype(kCommandFields)>,
+              "each member of Commands has one row in the table above");
+static_assert(core::kMaxJoints != core::kMaxContacts,
+              "arrays by joint and by contact differ in length");
+
+}  // namespace footfall::hal
