@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -19,20 +18,6 @@
 namespace footfall::apps {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-std::atomic<bool> g_stop{false};
-
-void on_interrupt(int) { g_stop.store(true); }
-
-}  // namespace
-
-const std::atomic<bool>* stop_on_signals() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  return &g_stop;
-}
 
 sim::WorldDescription load_world(const std::string& name, const std::string& beside,
                                  const std::string& place) {
@@ -146,7 +131,7 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
                                              lab::RunSpec& spec) {
   auto link = make_link(options.live, loop);
-  spec.link = link.get();
+  spec.live = link.get();
   if (link && !options.quiet) {
     fmt::print(options.json ? stderr : stdout, "live at {}: footfall tune\n", options.live.url);
     std::fflush(options.json ? stderr : stdout);
@@ -186,8 +171,8 @@ void remove_reloads(const std::string& folder) {
   for (int k = 1;; ++k) {
     const fs::path path = fs::path(folder) / fmt::format("reload-{}", k);
     std::error_code error;
-    if (!fs::exists(path / "log.mcap", error)) return;
-    fs::remove(path / "log.mcap", error);
+    if (!fs::exists(path, error)) return;
+    for (const char* log : {"log.mcap", "log.mcap.part"}) fs::remove(path / log, error);
     fs::remove(path, error);  // if nobody has put anything else there
   }
 }

@@ -2,7 +2,6 @@
 // scenarios.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -11,6 +10,7 @@
 #include "apps/shared/commands.h"
 #include "engine/lcm/link.h"
 #include "engine/log/writer.h"
+#include "engine/realtime/stop_signals.h"
 #include "engine/tick/control_loop.h"
 #include "lab/run/run.h"
 #include "lab/run/run_log.h"
@@ -39,8 +39,6 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 // it returns must live as long as the run. Throws what make_link() throws.
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
                                              lab::RunSpec& spec);
-// Set by Ctrl-C from now on.
-const std::atomic<bool>* stop_on_signals();
 // What a log says of how the run was set up.
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);
 // Creates the folder and the log in it, whose path goes to `id`; null with --no-log.

@@ -1,7 +1,7 @@
-// An engine on the network of live tuning: a thread that hears requests, hands them to the live
-// server, publishes answers, values, catalogue and telemetry. The tick only leaves copies for it.
-// Nothing that arrives can end the thread or the process; what is refused is counted. What an
-// engine hears is in one datagram each.
+// An engine on the network of live tuning, the live port over LCM: a thread that hears requests,
+// hands them to the live server, publishes answers, values, catalogue and telemetry. The tick only
+// leaves copies for it. Nothing that arrives can end the thread or the process; what is refused is
+// counted. What an engine hears is in one datagram each.
 #pragma once
 
 #include <array>
@@ -13,11 +13,10 @@
 #include "engine/lcm/bus.h"
 #include "engine/live/codec.h"
 #include "engine/live/key.h"
+#include "engine/live/port.h"
 #include "engine/live/server.h"
 
 namespace footfall::engine {
-
-class ControlLoop;
 
 struct LinkSettings {
   std::string url = kLiveUrl;
@@ -38,32 +37,21 @@ struct LinkCounters {
   std::int64_t rejected_in_all() const noexcept;
 };
 
-// What the link needs of one loop.
-struct LinkBinding;
-
-class LcmLink {
+class LcmLink final : public LivePort {
  public:
   // Opens the network. Throws std::invalid_argument (URL or prefix) or std::runtime_error (no such
   // network here), each with one sentence.
   LcmLink(ControlLoop& loop, const LinkSettings& settings);
-  ~LcmLink();
+  ~LcmLink() override;
   LcmLink(const LcmLink&) = delete;
   LcmLink& operator=(const LcmLink&) = delete;
 
-  // After ControlLoop::start(): begins to answer.
-  void start();
-  // The tick's thread, after each compute(); tick_ns: what it took. No lock, no allocation.
-  void post(const ControlLoop& loop, std::int64_t tick_ns) noexcept;
-  // After the last tick: tells it, refuses what still waits, ends the thread.
-  void stop() noexcept;
-
-  // Reload. Room for what another loop will post; any thread.
-  std::shared_ptr<LinkBinding> prepare(ControlLoop& loop) const;
-  // The tick's thread, between two ticks: from now on post() is of the loop that `binding` was
-  // prepared for. The loop before must live, unused, until rebound(); only then comes the next. No
-  // lock, no allocation.
-  void rebind(std::shared_ptr<LinkBinding> binding) noexcept;
-  bool rebound() const noexcept;
+  void start() override;
+  void post(const ControlLoop& loop, std::int64_t tick_ns) noexcept override;
+  void stop() noexcept override;
+  std::unique_ptr<LiveBinding> prepare(ControlLoop& loop) const override;
+  void rebind(std::unique_ptr<LiveBinding> binding) noexcept override;
+  bool rebound() const noexcept override;
 
   // What came so far; exact after stop().
   LinkCounters counters() const;

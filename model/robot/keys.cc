@@ -108,6 +108,10 @@ constexpr KeySpec kLimitsRows[] = {
     key("edit_ramp", quantity(kTime),
         "over which values move at least when a person changes them in a run")
         .otherwise("100 ms"),
+    key("overruns", integer(1, 1'000'000),
+        "late ticks in a row, after which `tick.overrun` has its reaction; single ones are counted "
+        "and logged")
+        .otherwise("15"),
     key("reload_watch", quantity(kTime),
         "how long after a reload a fault with a reaction brings the former behavior back")
         .otherwise("2 s"),
