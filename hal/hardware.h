@@ -21,6 +21,8 @@ class Hardware {
   virtual void write(const Commands& commands) noexcept = 0;
   // Brings the robot into its safest passive condition; always works, can be repeated.
   virtual void safe_stop() noexcept = 0;
+  // Whether its actuators have a torque loop whose gains a behavior's `torque_loop:` can set.
+  virtual bool uses_torque_loop() const { return false; }
 };
 
 }  // namespace footfall::hal

@@ -10,6 +10,7 @@
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
 #include "core/text/whole_file.h"
+#include "engine/realtime/executive.h"
 #include "lab/run/run.h"
 #include "lab/run/summary.h"
 #include "lab/scenario/loader.h"
@@ -112,24 +113,25 @@ int run_behavior(const RunOptions& options) {
   Backend backend = make_backend(options, *behavior, world);
   engine::ControlLoop loop(*behavior, *backend.hardware, loop_settings(options, world));
 
-  lab::RunSpec spec = make_spec(options, stop_on_signals());
+  lab::RunSpec spec = make_spec(options, engine::stop_on_signals());
   schedule_pushes(options, backend, spec);
   set_goal(options, *behavior, spec);
-  lab::RunIdentity id = {behavior->name,           behavior->robot.name, world.name,
-                         backend.hardware->name(), options.seed,         "",
-                         backend.physics};
+  lab::RunIdentity id = {behavior->name,  behavior->robot.name,
+                         world.name,      backend.hardware->name(),
+                         options.seed,    "",
+                         backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware)};
   const auto link = attach_link(options, loop, spec);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
-  LiveFiles live = watch_files(options, loop, *backend.hardware, world, log.get());
+  LiveFiles live = watch_files(options, loop, *backend.hardware, world, spec);
   spec.reloads = live.reloads.get();
 
   const lab::RunResult result = lab::run(loop, spec);
   live.watch.reset();
+  if (live.reloads) live.reloads->close();
   if (spec.status) std::fputs("\r\033[K", stderr);
   if (log) {
     log->close();
-    if (live.reloads) live.reloads->close();
     core::write_whole_file(options.log + "/summary.json",
                            lab::summary_json(id, result, true).dump(2) + "\n");
     core::write_whole_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
@@ -179,6 +181,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
     } catch (const InputError& error) {
       if (*error.what()) std::fprintf(stderr, "%s\n", error.what());
       exit_code = kBadInput;
+    } catch (const engine::RunInterrupted& error) {
+      std::fprintf(stderr, "footfall: error: %s\n", error.what());
+      exit_code = kMachineFailed;
     } catch (const std::exception& error) {
       const std::string text = error.what();
       const bool ours = text.find("error: ") != std::string::npos;  // names a user's file

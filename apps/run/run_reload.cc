@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "lab/run/log_setup.h"
 
@@ -45,10 +46,13 @@ lab::ReloadSetup reload_setup(const RunOptions& options, hal::Hardware& hardware
 }  // namespace
 
 LiveFiles watch_files(const RunOptions& options, engine::ControlLoop& loop, hal::Hardware& hardware,
-                      const sim::WorldDescription& world, engine::LogWriter* log) {
+                      const sim::WorldDescription& world, const lab::RunSpec& spec) {
   LiveFiles live;
   if (!options.reload) return live;
-  live.reloads = std::make_unique<lab::Reloads>(loop, log, reload_setup(options, hardware, world));
+  lab::ReloadSetup setup = reload_setup(options, hardware, world);
+  setup.live = spec.live;
+  setup.said = spec.said;
+  live.reloads = std::make_unique<lab::Reloads>(loop, std::move(setup));
   std::set<std::string> files;
   for (const engine::LogFile& file : lab::source_files(loop.behavior(), ""))
     files.insert(file.path);
@@ -61,7 +65,8 @@ LiveFiles watch_files(const RunOptions& options, engine::ControlLoop& loop, hal:
           if (fs::exists(file, error)) files.insert(fs::absolute(file).lexically_normal().string());
         }
         return std::vector<std::string>(files.begin(), files.end());
-      });
+      },
+      [reloads = live.reloads.get()] { reloads->tend(); });
   return live;
 }
 

@@ -15,8 +15,8 @@ struct LiveFiles {
   std::unique_ptr<engine::FileWatch> watch;
 };
 
-// hardware: the loop's; log: the run's, may be null. All must outlive the result.
+// hardware: of the loop; spec: of the run. All must outlive the result.
 LiveFiles watch_files(const RunOptions& options, engine::ControlLoop& loop, hal::Hardware& hardware,
-                      const sim::WorldDescription& world, engine::LogWriter* log);
+                      const sim::WorldDescription& world, const lab::RunSpec& spec);
 
 }  // namespace footfall::apps

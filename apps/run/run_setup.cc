@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
@@ -18,20 +17,6 @@
 namespace footfall::apps {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-std::atomic<bool> g_stop{false};
-
-void on_interrupt(int) { g_stop.store(true); }
-
-}  // namespace
-
-const std::atomic<bool>* stop_on_signals() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  return &g_stop;
-}
 
 sim::WorldDescription load_world(const std::string& name, const std::string& beside,
                                  const std::string& place) {
@@ -145,7 +130,7 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
                                              lab::RunSpec& spec) {
   auto link = make_link(options.live, loop);
-  spec.link = link.get();
+  spec.live = link.get();
   if (link && !options.quiet) {
     fmt::print(options.json ? stderr : stdout, "live at {}: footfall tune\n", options.live.url);
     std::fflush(options.json ? stderr : stdout);
@@ -175,9 +160,9 @@ void remove_reloads(const std::string& folder) {
   for (int k = 1;; ++k) {
     const fs::path path = fs::path(folder) / fmt::format("reload-{}", k);
     std::error_code error;
-    if (!fs::exists(path / "log.mcap", error)) return;
-    fs::remove(path / "log.mcap", error);
-    fs::remove(path, error);  // unless it contains other files
+    if (!fs::exists(path, error)) return;
+    for (const char* log : {"log.mcap", "log.mcap.part"}) fs::remove(path / log, error);
+    fs::remove(path, error);  // if nobody has put anything else there
   }
 }
 

@@ -1,7 +1,6 @@
 // Components of every run: world, backend, loop settings, log. For behaviors and scenarios.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,6 +9,7 @@
 #include "apps/shared/commands.h"
 #include "engine/lcm/link.h"
 #include "engine/log/writer.h"
+#include "engine/realtime/stop_signals.h"
 #include "engine/tick/control_loop.h"
 #include "lab/run/run.h"
 #include "lab/run/run_log.h"
@@ -38,9 +38,7 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 // if not. The result must outlive the run. Throws like make_link().
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
                                              lab::RunSpec& spec);
-// Set by Ctrl-C from this call on.
-const std::atomic<bool>* stop_on_signals();
-// Setup data recorded in the log.
+// What a log says of how the run was set up.
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);
 // Creates the folder and the log in it, whose path is added to `id`; null with --no-log.
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,

@@ -184,7 +184,7 @@ int run(const SweepCommandOptions& options, const Loaded& loaded, const std::str
   settings.worlds = prepared.worlds;
   settings.jobs = options.jobs;
   if (options.keep_logs) settings.logs = out + "/logs";
-  settings.stop = stop_on_signals();
+  settings.stop = engine::stop_on_signals();
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   if (terminal) settings.progress = show_progress;
   lab::announce_to_children();

@@ -283,7 +283,7 @@ int test(const TestOptions& options) {
                options.rerun_failed ? "nothing failed in the last session" : "an empty shard");
     return kGood;
   }
-  settings.stop = stop_on_signals();
+  settings.stop = engine::stop_on_signals();
   const StatusLine status;
   settings.progress = [&status](const lab::SuiteProgress& progress) { status.show(progress); };
   settings.scenario_done = [&](const Suite& all, std::size_t s) {

@@ -41,7 +41,8 @@ std::int64_t random_number() {
 
 }  // namespace
 
-struct LinkBinding {
+// What the link needs of one loop.
+struct LinkBinding final : LiveBinding {
   LinkBinding(ControlLoop& loop, double rate)
       : behavior(loop.behavior()), entrance(loop.edits().entrance(kEntrance)), feed(loop, rate) {}
   const behaviors::Behavior& behavior;
@@ -56,7 +57,7 @@ std::int64_t LinkCounters::rejected_in_all() const noexcept {
 struct LcmLink::Impl {
   Impl(ControlLoop& loop, const LinkSettings& how)
       : settings(how),
-        binding(std::make_shared<LinkBinding>(loop, how.telemetry)),
+        binding(std::make_unique<LinkBinding>(loop, how.telemetry)),
         posting(binding.get()),
         server(loop.behavior(), binding->entrance, {random_number(), how.key.has_value()}),
         bus(how.url) {
@@ -197,8 +198,8 @@ struct LcmLink::Impl {
   }
 
   const LinkSettings settings;
-  std::shared_ptr<LinkBinding> binding;
-  LinkBinding* posting;  // used by the tick's thread
+  std::unique_ptr<LinkBinding> binding;
+  LinkBinding* posting;  // of the tick's thread
   LiveServer server;
   LcmBus bus;
   LiveServer::Answers answers;
@@ -209,7 +210,7 @@ struct LcmLink::Impl {
   Clock::time_point catalogue_at, values_at;
 
   // --- Between the threads. ---
-  std::shared_ptr<LinkBinding> next;  // of the tick's thread until `rebinding`, then of the link's
+  std::unique_ptr<LinkBinding> next;  // of the tick's thread until `rebinding`, then of the link's
   std::atomic<bool> rebinding{false}, stopping{false};
   mutable std::mutex told_mutex;  // never locked by the tick
   LinkCounters told;
@@ -237,13 +238,13 @@ void LcmLink::stop() noexcept {
   impl_->thread.join();
 }
 
-std::shared_ptr<LinkBinding> LcmLink::prepare(ControlLoop& loop) const {
-  return std::make_shared<LinkBinding>(loop, impl_->settings.telemetry);
+std::unique_ptr<LiveBinding> LcmLink::prepare(ControlLoop& loop) const {
+  return std::make_unique<LinkBinding>(loop, impl_->settings.telemetry);
 }
 
-void LcmLink::rebind(std::shared_ptr<LinkBinding> binding) noexcept {
-  impl_->posting = binding.get();
-  impl_->next = std::move(binding);
+void LcmLink::rebind(std::unique_ptr<LiveBinding> binding) noexcept {
+  impl_->next.reset(static_cast<LinkBinding*>(binding.release()));  // of prepare()
+  impl_->posting = impl_->next.get();
   impl_->rebinding.store(true, std::memory_order_release);
 }
 

@@ -13,11 +13,10 @@
 #include "engine/lcm/bus.h"
 #include "engine/live/codec.h"
 #include "engine/live/key.h"
+#include "engine/live/port.h"
 #include "engine/live/server.h"
 
 namespace footfall::engine {
-
-class ControlLoop;
 
 struct LinkSettings {
   std::string url = kLiveUrl;
@@ -38,33 +37,21 @@ struct LinkCounters {
   std::int64_t rejected_in_all() const noexcept;
 };
 
-// The link's data for one loop.
-struct LinkBinding;
-
-class LcmLink {
+class LcmLink final : public LivePort {
  public:
   // Opens the network. Throws std::invalid_argument (URL or prefix) or std::runtime_error (network
   // not available), each with one sentence.
   LcmLink(ControlLoop& loop, const LinkSettings& settings);
-  ~LcmLink();
+  ~LcmLink() override;
   LcmLink(const LcmLink&) = delete;
   LcmLink& operator=(const LcmLink&) = delete;
 
-  // Starts answering; call after ControlLoop::start().
-  void start();
-  // Called by the tick's thread after each compute(); tick_ns: its duration. No lock, no
-  // allocation.
-  void post(const ControlLoop& loop, std::int64_t tick_ns) noexcept;
-  // Call after the last tick: publishes it, refuses waiting requests, ends the thread.
-  void stop() noexcept;
-
-  // Reload: allocates data for another loop; any thread.
-  std::shared_ptr<LinkBinding> prepare(ControlLoop& loop) const;
-  // Called by the tick's thread between two ticks: post() now belongs to the loop for which
-  // `binding` was prepared. The previous loop must exist, unused, until rebound(); only then the
-  // next rebind is allowed. No lock, no allocation.
-  void rebind(std::shared_ptr<LinkBinding> binding) noexcept;
-  bool rebound() const noexcept;
+  void start() override;
+  void post(const ControlLoop& loop, std::int64_t tick_ns) noexcept override;
+  void stop() noexcept override;
+  std::unique_ptr<LiveBinding> prepare(ControlLoop& loop) const override;
+  void rebind(std::unique_ptr<LiveBinding> binding) noexcept override;
+  bool rebound() const noexcept override;
 
   // Current counters; exact after stop().
   LinkCounters counters() const;

@@ -18,8 +18,9 @@ constexpr int kEmptyLooks = 8;
 }  // namespace
 
 FileWatch::FileWatch(const std::vector<std::string>& files, double interval,
-                     std::function<std::vector<std::string>()> changed)
-    : interval_(interval), changed_(std::move(changed)) {
+                     std::function<std::vector<std::string>()> changed,
+                     std::function<void()> each_look)
+    : interval_(interval), changed_(std::move(changed)), each_look_(std::move(each_look)) {
   watch_from_now_on(files);
   thread_ = std::thread([this] { work(); });
 }
@@ -93,15 +94,17 @@ void FileWatch::work() {
     Stamps now = look_at_all(last);
     const bool still = settled(now, last);
     last = std::move(now);
-    if (still && !same_content(last, known_)) {
-      known_ = last;
-      try {
+    try {
+      if (still && !same_content(last, known_)) {
+        known_ = last;
         watch_from_now_on(changed_());
-      } catch (const std::exception&) {
-        return;
+        // A file that is new here was read a moment ago; the others are compared with what was
+        // told.
+        last = known_;
       }
-      // A file that is new here was read a moment ago; the others are compared with what was told.
-      last = known_;
+      if (each_look_) each_look_();
+    } catch (const std::exception&) {
+      return;
     }
     lock.lock();
   }

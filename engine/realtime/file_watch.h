@@ -20,9 +20,11 @@ class FileWatch {
   // `changed` is called from the watching thread, each time after the content of one of `files` has
   // become another (or there, or gone) and has stayed so from one look to the next, `interval` s
   // apart (an empty file, which an editor may be about to fill, for eight looks); it returns the
-  // files to watch from then on. What it throws ends the watch.
+  // files to watch from then on. `each_look`, if there is one, is called from the same thread after
+  // each look. What they throw ends the watch.
   FileWatch(const std::vector<std::string>& files, double interval,
-            std::function<std::vector<std::string>()> changed);
+            std::function<std::vector<std::string>()> changed,
+            std::function<void()> each_look = nullptr);
   // Waits for `changed` to return.
   ~FileWatch();
   FileWatch(const FileWatch&) = delete;
@@ -47,6 +49,7 @@ class FileWatch {
 
   double interval_;
   std::function<std::vector<std::string>()> changed_;
+  std::function<void()> each_look_;
   Stamps known_;  // as `changed` was told last
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -26,7 +26,6 @@ bool Pacer::wait() noexcept {
   next_ns_ += period_ns_;
   if (next_ns_ <= now) {
     next_ns_ += (now - next_ns_) / period_ns_ * period_ns_;  // the last one that passed
-    ++overruns_;
     return false;
   }
   const timespec until = {next_ns_ / kNsPerSecond, next_ns_ % kNsPerSecond};

@@ -12,12 +12,10 @@ class Pacer {
   // Sleeps until the next boundary. False: that boundary had passed already (an overrun); the next
   // one is then the first in the future.
   bool wait() noexcept;
-  std::int64_t overruns() const noexcept { return overruns_; }
 
  private:
   std::int64_t period_ns_;
   std::int64_t next_ns_ = 0;
-  std::int64_t overruns_ = 0;
 };
 
 }  // namespace footfall::engine

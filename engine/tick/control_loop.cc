@@ -145,6 +145,13 @@ LoopState ControlLoop::tick() noexcept {
   return state_;
 }
 
+void ControlLoop::late(bool late) noexcept {
+  overruns_ = late ? overruns_ + 1 : 0;
+  if (!late) return;
+  faults_.add(core::Fault::tick_overrun);
+  if (overruns_ == behavior_.robot.overruns) react(core::Fault::tick_overrun);
+}
+
 bool ControlLoop::sense() noexcept {
   if (scripts_ && lockstep_) scripts_->wait();
   fresh_ = hardware_.read(sensors_);

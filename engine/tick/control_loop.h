@@ -64,6 +64,9 @@ class ControlLoop {
   void compute() noexcept;  // estimate ... safety filter; commands are ready
   void actuate() noexcept;  // hardware write; the backend advances
   LoopState tick() noexcept;
+  // Before sense() of a paced tick: whether it begins late. Late ticks are counted (tick.overrun);
+  // as many in a row as the robot's `limits.overruns` have the fault's reaction.
+  void late(bool late) noexcept;
 
   LoopState state() const noexcept { return state_; }
   std::int64_t ticks() const noexcept { return tick_; }
@@ -175,6 +178,7 @@ class ControlLoop {
   core::Fault ended_by_ = core::Fault::count;
   core::Fault failed_by_ = core::Fault::count;
   bool probation_ = false;
+  int overruns_ = 0;                      // late ticks in a row
   bool fresh_ = true, was_fresh_ = true;  // new sensor data in this tick, in the previous
   WriteWatch watch_;
   InputTrace* trace_ = nullptr;

@@ -36,6 +36,7 @@ void ControlLoop::take_over(ControlLoop& old, const behaviors::TakeOverMap& map,
   fresh_ = old.fresh_;
   was_fresh_ = old.was_fresh_;
   failed_by_ = core::Fault::count;
+  overruns_ = change == ValueChange::at_once ? 0 : old.overruns_;
   limit_steps_ = old.limit_steps_;
   taken_over_ = true;
   safety_.take_over(old.safety_);

@@ -21,6 +21,7 @@ class SensorFaults final : public Hardware {
   bool read(Sensors& sensors) noexcept override;
   void write(const Commands& commands) noexcept override { real_.write(commands); }
   void safe_stop() noexcept override { real_.safe_stop(); }
+  bool uses_torque_loop() const override { return real_.uses_torque_loop(); }
 
  private:
   bool failing(SensorGroup group) const noexcept {

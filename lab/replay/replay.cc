@@ -216,7 +216,9 @@ void Replay::tick(const std::function<void()>& after, const std::function<void()
   impl_->end_tick();
   ReplayStage& now = *impl_->now;
   const LogContinuation& continues = now.setup.continues;
-  if (continues.number > 0 && now.loop->ticks() == continues.proven) now.loop->set_probation(false);
+  if (continues.number > 0 && now.loop->ticks() == now.log->inputs.first_tick + continues.watch) {
+    now.loop->set_probation(false);
+  }
   now.fill_trace();
   now.trace.inspect = before_machine;
   if (!std::exchange(impl_->read, false)) now.loop->sense();

@@ -122,7 +122,7 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
 std::string setup_text(const std::string& text, const LogContinuation& continues) {
   auto json = nlohmann::ordered_json::parse(text);
   json["continues"] = {
-      {"number", continues.number}, {"back", continues.back}, {"proven", continues.proven}};
+      {"number", continues.number}, {"back", continues.back}, {"watch", continues.watch}};
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -144,7 +144,7 @@ RunSetup read_setup(const std::string& text) {
     }
     if (json.contains("continues")) {
       const auto& from = json.at("continues");
-      setup.continues = {from.at("number"), from.at("back"), from.at("proven")};
+      setup.continues = {from.at("number"), from.at("back"), from.at("watch")};
     }
     s.script_access = {json.at("script_access").at("files"),
                        json.at("script_access").at("processes")};

@@ -23,9 +23,9 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
 
 // Of the log of a reload: how it goes on from the one before.
 struct LogContinuation {
-  int number = 0;           // of the reload; 0: the log begins with its run
-  bool back = false;        // the behavior from before the last one goes on
-  std::int64_t proven = 0;  // tick at which faults have their reactions again
+  int number = 0;          // of the reload; 0: the log begins with its run
+  bool back = false;       // the behavior from before the last one goes on
+  std::int64_t watch = 0;  // of its first ticks, in which faults bring the one before back
 };
 
 // The same of a log that goes on from another.

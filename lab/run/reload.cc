@@ -3,190 +3,285 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <array>
+#include <stdexcept>
 #include <utility>
 
 #include "core/fault.h"
 #include "core/index.h"
-#include "lab/run/log_setup.h"
 
 namespace footfall::lab {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr double kPatience = 5.0;  // s that a reload waits before it is told that it does
+constexpr double kPatience = 5.0;  // s that a reload waits before people are told
 
 std::int64_t ticks_of(double seconds, const engine::ControlLoop& loop) {
   return behaviors::periods_of(seconds, loop.behavior().rate_mhz);
 }
 
-// The paths of the innermost active states.
-std::string active_states(const engine::ControlLoop& loop) {
-  std::string text;
-  for (const int s : loop.machine().active_atomic()) {
-    text += fmt::format("{}'{}'", text.empty() ? "" : ", ", loop.behavior().states[at(s)].path);
+// A text composed in the tick's thread: no heap; what is too long is cut.
+class Line {
+ public:
+  template <class... Values>
+  void add(fmt::format_string<Values...> format, Values&&... values) noexcept {
+    const auto to = fmt::format_to_n(bytes_.data() + size_, bytes_.size() - size_, format,
+                                     std::forward<Values>(values)...);
+    size_ = std::min(bytes_.size(), size_ + to.size);
   }
-  return text;
-}
+  // The paths of the innermost active states.
+  void add_states(const engine::ControlLoop& loop) noexcept {
+    const char* comma = "";
+    for (const int s : loop.machine().active_atomic()) {
+      add("{}'{}'", std::exchange(comma, ", "), loop.behavior().states[at(s)].path);
+    }
+  }
+  std::string_view view() const noexcept { return {bytes_.data(), size_}; }
+
+ private:
+  std::array<char, 2 * kMostReloadText> bytes_{};
+  std::size_t size_ = 0;
+};
 
 }  // namespace
 
-std::string reload_log(const std::string& folder, int number) {
-  return fmt::format("{}/reload-{}/log.mcap", folder, number);
-}
-
-Reloads::Reloads(engine::ControlLoop& first, engine::LogWriter* log, ReloadSetup setup)
-    : setup_(std::move(setup)), robot_(robot_files(first.behavior())) {
+Reloads::Reloads(engine::ControlLoop& first, ReloadSetup setup)
+    : setup_(std::move(setup)),
+      robot_(robot_files(first.behavior())),
+      now_(std::make_unique<ReloadCandidate>()) {
   // Owned by whoever started the run.
   running_ = std::shared_ptr<const behaviors::Behavior>(&first.behavior(), [](const auto*) {});
-  now_.behavior = running_;
-  now_.loop = &first;
-  now_.log = log;
-  if (log != nullptr) now_.header = make_log_header(first.behavior(), setup_.source);
+  now_->behavior = running_;
+  now_->loop = &first;
+  if (!setup_.folder.empty()) now_->header = make_log_header(first.behavior(), setup_.source);
 }
 
-Reloads::~Reloads() { delete offered_.exchange(nullptr); }
+Reloads::~Reloads() = default;
+
+// --- The thread beside the run. ---
 
 std::vector<std::string> Reloads::request(const std::string& path) {
+  drop_offer();
+  tend();
   std::shared_ptr<const behaviors::Behavior> from;
-  std::vector<Stage> retired;
   {
-    const std::lock_guard lock(running_mutex_);
+    const std::lock_guard lock(meeting_);
     from = running_;
-    retired.swap(retired_);
   }
-  retired.clear();
-  auto candidate =
-      std::make_unique<ReloadCandidate>(prepare_reload(path, std::move(from), robot_, setup_));
-  std::vector<std::string> files = candidate->files;
-  delete offered_.exchange(candidate.release());
+  loaded_ = std::make_unique<ReloadCandidate>(prepare_reload(path, from, robot_, setup_));
+  std::vector<std::string> files = loaded_->files;
+  if (!loaded_->reasons.empty()) {
+    refuse(*loaded_);
+    loaded_.reset();
+  }
+  tend();
   return files;
 }
 
-// A newer one replaces what waits; one that is refused does, too: its file is not what waits any
-// more.
-void Reloads::take_offer() {
-  if (offered_.load(std::memory_order_relaxed) == nullptr) return;
-  waiting_.reset(offered_.exchange(nullptr));
-  waits_since_ = now_.loop->ticks();
-  complained_ = false;
-}
-
-// Drops what waits if there are reasons against it; it was prepared for the behavior that ran then.
-void Reloads::judge_waiting() {
-  if (waiting_ == nullptr) return;
-  if (waiting_->loop != nullptr && waiting_->from != now_.behavior) {
-    aim_reload(*waiting_, now_.behavior);
+// A newer file replaces what waits, and so does one that is refused: what waits is not that file
+// any more.
+void Reloads::drop_offer() {
+  std::unique_ptr<ReloadCandidate> offer;
+  {
+    const std::lock_guard lock(meeting_);
+    offer = std::move(offer_);
   }
-  if (waiting_->reasons.empty()) return;
-  std::string line = fmt::format("{}: not reloaded:", waiting_->path);
-  for (const std::string& reason : waiting_->reasons) line += "\n  " + reason;
-  say("refused", fmt::format("{}: {}", waiting_->path, waiting_->reasons.front()), line);
-  waiting_.reset();
+  loaded_.reset();
 }
 
-bool Reloads::swap() {
-  if (failed_.loop != nullptr) set_running(failed_);
-  if (before_.loop != nullptr && now_.loop->ticks() >= proven_at_) {
-    now_.loop->set_probation(false);
-    set_running(before_);
+void Reloads::tend() {
+  std::unique_ptr<ReloadCandidate> retired;
+  std::unique_ptr<RunOutputs> unused;
+  ReloadCandidate* running = nullptr;
+  int done = 0;
+  {
+    const std::lock_guard lock(meeting_);
+    retired = std::move(retired_);
+    unused = std::move(unused_);
+    if (settled_) {
+      running = now_.get();
+      done = done_;
+    }
   }
-  take_offer();
-  judge_waiting();
-  if (waiting_ == nullptr || before_.loop != nullptr) return false;
-  if (!waiting_->loop->may_take_over(*now_.loop, waiting_->there)) {
-    complain_once();
-    return false;
+  for (; reports_.waiting() > 0; reports_.release(1)) {
+    const Report& report = reports_.at(0);
+    if (report.used != nullptr) report.used->name();
+    if (setup_.tell) setup_.tell(std::string(report.line.view()));
   }
-  engine::LogWriter* log = open_log(waiting_->header, *waiting_->behavior, false);
-  engine::ControlLoop& loop = *waiting_->loop;
-  loop.take_over(*now_.loop, waiting_->there, engine::ValueChange::ramped);
-  loop.set_probation(true);
-  before_ = std::exchange(now_, {});
-  now_ = {waiting_->behavior, std::move(waiting_->loop), &loop, log, std::move(waiting_->header)};
-  back_ = std::move(waiting_->back);
-  path_ = waiting_->path;
-  proven_at_ = loop.ticks() + ticks_of(loop.behavior().robot.reload_watch, loop);
-  set_running(failed_);
-  waiting_.reset();
-  const std::string place = active_states(loop);
-  say("done", fmt::format("{} in {}", path_, place),
-      fmt::format("{}: reloaded at {:.3f} s, in {}", path_, loop.time(), place));
-  return true;
+  unused.reset();  // its number is free again
+  if (retired != nullptr) retire(std::move(retired));
+  if (running != nullptr && loaded_ != nullptr) arm(*running, done);
+  waits_.store(loaded_ != nullptr);
 }
 
-bool Reloads::take_back() {
-  if (before_.loop == nullptr || now_.loop->failed_by() == core::Fault::count) return false;
-  const core::Fault fault = now_.loop->failed_by();
-  engine::LogWriter* log = open_log(before_.header, *before_.behavior, true);
-  before_.loop->take_over(*now_.loop, back_, engine::ValueChange::at_once);
-  failed_ = std::exchange(now_, std::exchange(before_, {}));
-  now_.log = log;
-  say("taken back", fmt::format("{}: fault {}", path_, core::fault_name(fault)),
-      fmt::format("{}: taken back at {:.3f} s: fault {}; the file is not tried again until it "
-                  "changes",
-                  path_, now_.loop->time(), core::fault_name(fault)));
-  return true;
-}
-
-// Nobody uses `retired` any more; freeing it takes too long between two ticks.
-void Reloads::set_running(Stage& retired) {
-  const std::lock_guard lock(running_mutex_);
-  running_ = now_.behavior;
-  if (retired.own) retired_.push_back(std::exchange(retired, {}));
-  retired = {};
-}
-
-void Reloads::say(const std::string& what, const std::string& detail, const std::string& line) {
-  news_.emplace_back(what, detail);
-  if (setup_.tell) setup_.tell(line);
-}
-
-std::vector<std::pair<std::string, std::string>> Reloads::take_news() {
-  return std::exchange(news_, {});
-}
-
-std::string Reloads::note() const {
-  if (waiting_ == nullptr) return "";
-  if (before_.loop != nullptr) return "a reload waits: the one before is on probation";
-  return "a reload waits for a state with `reload: ok`";
-}
-
-void Reloads::complain_once() {
-  if (complained_ || now_.loop->ticks() - waits_since_ < ticks_of(kPatience, *now_.loop)) return;
-  complained_ = true;
-  if (setup_.tell) {
-    setup_.tell(
-        fmt::format("{}: not reloaded yet: since {:g} s no state was active that permits it "
-                    "(`reload: ok`) and is "
-                    "in the file; active: {}",
-                    waiting_->path, kPatience, active_states(*now_.loop)));
+// Opens all that the candidate will write to, and what the running loop will if it is brought back.
+// Nothing else was offered, so that `running` runs on meanwhile.
+void Reloads::arm(ReloadCandidate& running, int done) {
+  if (loaded_->from != running.behavior) aim_reload(*loaded_, running.behavior);
+  if (!loaded_->reasons.empty()) {
+    refuse(*loaded_);
+    loaded_.reset();
+    return;
   }
+  const auto watch = ticks_of(loaded_->behavior->robot.reload_watch, *loaded_->loop);
+  loaded_->outputs = open_outputs(*loaded_, {done + 1, false, watch}, setup_);
+  loaded_->way_back = open_outputs(running, {done + 2, true, 0}, setup_);
+  const std::lock_guard lock(meeting_);
+  offer_ = std::move(loaded_);
 }
 
-// What follows the log before it: its setup says which one that is, and that it is the behavior
-// from before the last one that goes on (`back`).
-engine::LogWriter* Reloads::open_log(const engine::LogHeader& header,
-                                     const behaviors::Behavior& behavior, bool back) {
-  LogContinuation continues{++done_, back, now_.loop->ticks()};
-  if (now_.log == nullptr) return nullptr;
-  if (!back) continues.proven += ticks_of(behavior.robot.reload_watch, *now_.loop);
-  const std::string path = reload_log(setup_.folder, continues.number);
-  engine::LogHeader own = header;
-  own.setup = setup_text(header.setup, continues);
+void Reloads::refuse(const ReloadCandidate& candidate) {
+  if (ReloadNews* const news = refusals_.next()) {
+    news->what.set("refused");
+    news->detail.set(fmt::format("{}: {}", candidate.path, candidate.reasons.front()));
+    refusals_.publish();
+  }
+  if (!setup_.tell) return;
+  std::string line = fmt::format("{}: not reloaded:", candidate.path);
+  for (const std::string& reason : candidate.reasons) line += "\n  " + reason;
+  setup_.tell(line);
+}
+
+void Reloads::retire(std::unique_ptr<ReloadCandidate> stage) {
+  close_outputs(stage->outputs.get());
+  close_outputs(stage->way_back.get());
+}
+
+void Reloads::close_outputs(RunOutputs* outputs) {
+  if (outputs == nullptr) return;
   try {
-    fs::create_directories(fs::path(path).parent_path());
-    logs_.push_back(std::make_unique<engine::LogWriter>(path, behavior.signals, own));
-    return logs_.back().get();
-  } catch (const std::exception& problem) {  // the robot steps on
-    if (setup_.tell) setup_.tell(fmt::format("the run goes on without a log: {}", problem.what()));
-    return nullptr;
+    outputs->close();
+  } catch (const std::exception& problem) {
+    if (failure_.empty()) failure_ = problem.what();
   }
 }
 
 void Reloads::close() {
-  for (const auto& log : logs_) log->close();
+  drop_offer();
+  tend();
+  for (ReloadCandidate* stage : {now_.get(), former_.get(), failed_.get()}) {
+    if (stage == nullptr) continue;
+    close_outputs(stage->outputs.get());
+    close_outputs(stage->way_back.get());
+  }
+  if (!failure_.empty()) throw std::runtime_error(failure_);
+}
+
+// --- The thread that ticks. ---
+
+// If the thread beside holds the mutex just now, the next tick will do.
+engine::ControlLoop* Reloads::swap() {
+  if (former_ != nullptr && now_->loop->ticks() >= proven_at_) now_->loop->set_probation(false);
+  const std::unique_lock lock(meeting_, std::try_to_lock);
+  if (!lock) return nullptr;
+  hand_over();
+  if (offer_ == nullptr || !settled_) return nullptr;
+  engine::ControlLoop& loop = *offer_->loop;
+  if (!loop.may_take_over(*now_->loop, offer_->there)) {
+    complain_once();
+    return nullptr;
+  }
+  loop.take_over(*now_->loop, offer_->there, engine::ValueChange::ramped);
+  former_ = std::exchange(now_, std::move(offer_));
+  running_ = now_->behavior;
+  settled_ = false;
+  ++done_;
+  now_->outputs->used = true;
+  proven_at_ = loop.ticks() + ticks_of(loop.behavior().robot.reload_watch, loop);
+  loop.set_probation(loop.ticks() < proven_at_);
+  Line detail, line;
+  detail.add("{} in ", now_->path);
+  detail.add_states(loop);
+  line.add("{}: reloaded at {:.3f} s, in ", now_->path, loop.time());
+  line.add_states(loop);
+  tell_from_tick("done", detail.view(), line.view());
+  return &loop;
+}
+
+// The thread beside frees what is handed over. One slot each is enough: another offer is armed only
+// after it has emptied them.
+void Reloads::hand_over() noexcept {
+  if (failed_ != nullptr) {
+    retired_ = std::move(failed_);
+  } else if (former_ != nullptr && now_->loop->ticks() >= proven_at_) {
+    retired_ = std::move(former_);
+    unused_ = std::move(now_->way_back);
+  } else {
+    return;
+  }
+  running_ = now_->behavior;
+  settled_ = true;
+}
+
+engine::ControlLoop* Reloads::take_back() {
+  if (former_ == nullptr) return nullptr;
+  const core::Fault fault = now_->loop->failed_by();
+  engine::ControlLoop& loop = *former_->loop;
+  loop.take_over(*now_->loop, now_->back, engine::ValueChange::at_once);
+  failed_ = std::exchange(now_, std::move(former_));
+  std::swap(now_->outputs, failed_->way_back);
+  ++done_;
+  now_->outputs->used = true;
+  Line detail, line;
+  detail.add("{}: fault {}", failed_->path, core::fault_name(fault));
+  line.add(
+      "{}: taken back at {:.3f} s: fault {}; the file is not tried again until it "
+      "changes",
+      failed_->path, loop.time(), core::fault_name(fault));
+  tell_from_tick("taken back", detail.view(), line.view());
+  return &loop;
+}
+
+std::unique_ptr<engine::LiveBinding> Reloads::take_binding() {
+  return std::move(now_->outputs->live);
+}
+
+void Reloads::tell_from_tick(const char* what, std::string_view detail,
+                             std::string_view line) noexcept {
+  if (ReloadNews* const news = news_.next()) {
+    news->what.set(what);
+    news->detail.set(detail);
+    news_.publish();
+  }
+  if (Report* const report = reports_.next()) {
+    report->line.set(line);
+    report->used = now_->outputs.get();
+    reports_.publish();
+  }
+}
+
+bool Reloads::take_news(ReloadNews& news) noexcept {
+  for (auto* const queue : {&refusals_, &news_}) {
+    if (queue->waiting() == 0) continue;
+    news = queue->at(0);
+    queue->release(1);
+    return true;
+  }
+  return false;
+}
+
+std::string Reloads::note() {
+  if (waits_.load()) return "a reload waits: the one before is on probation";
+  const std::lock_guard lock(meeting_);
+  return offer_ == nullptr ? "" : "a reload waits for a state with `reload: ok`";
+}
+
+void Reloads::complain_once() noexcept {
+  const std::int64_t ticks = now_->loop->ticks();
+  if (offer_->waits_since < 0) offer_->waits_since = ticks;
+  if (offer_->complained || ticks - offer_->waits_since < ticks_of(kPatience, *now_->loop)) return;
+  offer_->complained = true;
+  Line line;
+  line.add(
+      "{}: not reloaded yet: since {:g} s no state was active that permits it (`reload: ok`) and "
+      "is in the file; active: ",
+      offer_->path, kPatience);
+  line.add_states(*now_->loop);
+  if (Report* const report = reports_.next()) {
+    report->line.set(line.view());
+    report->used = nullptr;
+    reports_.publish();
+  }
 }
 
 }  // namespace footfall::lab

@@ -1,6 +1,6 @@
-// Reloads of a run: a candidate waits for its moment, takes over between two ticks, is on probation
-// for a while and taken back on a fault. Each behavior that ran has a log of its own:
-// DIR/log.mcap, DIR/reload-1/log.mcap, ...
+// Reloads of a run: a candidate is prepared beside it, waits for its moment, takes over between two
+// ticks, is on probation for a while and taken back on a fault. Each behavior that ran has a log of
+// its own: DIR/log.mcap, DIR/reload-1/log.mcap, ...
 #pragma once
 
 #include <atomic>
@@ -9,75 +9,96 @@
 #include <string>
 #include <vector>
 
+#include "core/realtime/ring.h"
+#include "engine/edits/door.h"
+#include "engine/realtime/executive.h"
 #include "lab/run/reload_candidate.h"
 
 namespace footfall::lab {
 
-// The log of a run's reload, 1 being its first.
-std::string reload_log(const std::string& folder, int number);
+inline constexpr std::size_t kMostReloadText = 500;
+using ReloadText = engine::FixedText<kMostReloadText>;
 
-class Reloads {
+// An event `reload` of the log.
+struct ReloadNews {
+  engine::FixedText<16> what;
+  ReloadText detail;
+};
+
+// Two threads: the one that ticks, and one beside it that loads, opens logs, tells and frees. They
+// meet at a mutex that the beside holds only to exchange pointers and the tick only tries.
+class Reloads final : public engine::LoopExchange {
  public:
-  // `first` runs; its behavior, `setup.hardware` and `log` (null: none) must outlive this.
-  Reloads(engine::ControlLoop& first, engine::LogWriter* log, ReloadSetup setup);
-  ~Reloads();
+  // `first` runs; its behavior and what `setup` points to must outlive this.
+  Reloads(engine::ControlLoop& first, ReloadSetup setup);
+  ~Reloads() override;
   Reloads(const Reloads&) = delete;
   Reloads& operator=(const Reloads&) = delete;
 
-  // --- Any one thread. --- Loads `path` beside the run and offers it, in the place of what was
-  // offered and still waits. Returns the files that it is made of.
+  // --- The thread beside the run. ---
+  // Loads `path` and offers it to the run, in the place of what was offered and still waits.
+  // Returns the files that it is made of.
   std::vector<std::string> request(const std::string& path);
-
-  // --- The thread that ticks. ---
-  // Between two ticks. True: now() is another loop, log() another log.
-  bool swap();
-  // After compute(), before actuate(). True: the tick has shown a fault of a reload on probation,
-  // and now() is the loop that ran before: its compute() is to be called on the same tick.
-  bool take_back();
-  engine::ControlLoop& now() noexcept { return *now_.loop; }
-  engine::LogWriter* log() noexcept { return now_.log; }
-  // What became of reloads since the last call, for the log: {what, detail}.
-  std::vector<std::pair<std::string, std::string>> take_news();
-  // What is to be known of one that waits; empty: none does.
-  std::string note() const;
-  int done() const noexcept { return done_; }  // swaps, those back too
-  // Ends the logs that this wrote. Throws std::runtime_error if one of them failed.
+  // To be called now and then: tells what became of reloads, frees what nobody uses any more,
+  // prepares what had to wait for the end of a probation.
+  void tend();
+  // After the run: tend(), and ends the logs. Throws std::runtime_error if one of them failed.
   void close();
 
+  // --- The thread that ticks. ---
+  engine::ControlLoop* swap() override;
+  engine::ControlLoop* take_back() override;
+  std::unique_ptr<engine::LiveBinding> take_binding() override;
+  // The log's side of the loop that swap() or take_back() returned last.
+  RunLog& log() noexcept { return *now_->outputs->log; }
+  // The next event for the log that is written now; false: none.
+  bool take_news(ReloadNews& news) noexcept;
+  // What a status line tells of a reload that waits; empty: none does.
+  std::string note();
+
  private:
-  struct Stage {
-    std::shared_ptr<const behaviors::Behavior> behavior;
-    std::unique_ptr<engine::ControlLoop> own;
-    engine::ControlLoop* loop = nullptr;
-    engine::LogWriter* log = nullptr;
-    engine::LogHeader header;  // for going on after being taken back
+  // From the tick, for people.
+  struct Report {
+    ReloadText line;
+    RunOutputs* used = nullptr;  // outputs that came into use
   };
 
-  void set_running(Stage& retired);
-  void take_offer();
-  void judge_waiting();
-  void complain_once();
-  engine::LogWriter* open_log(const engine::LogHeader& header, const behaviors::Behavior& behavior,
-                              bool back);
-  void say(const std::string& what, const std::string& detail, const std::string& line);
+  void hand_over() noexcept;
+  void complain_once() noexcept;
+  void tell_from_tick(const char* what, std::string_view detail, std::string_view line) noexcept;
+  void arm(ReloadCandidate& running, int done);
+  void refuse(const ReloadCandidate& candidate);
+  void drop_offer();
+  void retire(std::unique_ptr<ReloadCandidate> stage);
+  void close_outputs(RunOutputs* outputs);
 
-  ReloadSetup setup_;
-  FileDigests robot_;
-  std::mutex running_mutex_;  // taken at swaps, never in a tick
+  const ReloadSetup setup_;
+  const FileDigests robot_;
+
+  // --- Of the thread beside. ---
+  std::unique_ptr<ReloadCandidate> loaded_;  // cannot be armed yet
+  std::string failure_;                      // of the first log that could not be written
+
+  // --- Behind the mutex. ---
+  std::mutex meeting_;
+  std::unique_ptr<ReloadCandidate> offer_;  // armed
+  std::unique_ptr<ReloadCandidate> retired_;
+  std::unique_ptr<RunOutputs> unused_;
   std::shared_ptr<const behaviors::Behavior> running_;
-  std::atomic<ReloadCandidate*> offered_{nullptr};
-  std::unique_ptr<ReloadCandidate> waiting_;
-  std::int64_t waits_since_ = 0;  // tick
-  bool complained_ = false;
-  Stage now_, before_;           // before_.loop: what a fault brings back; null: no probation
-  Stage failed_;                 // that was taken back in the last tick
-  std::vector<Stage> retired_;   // behind running_mutex_: to be freed by the thread that loads
-  behaviors::TakeOverMap back_;  // from now_ to before_
-  std::int64_t proven_at_ = 0;   // tick at which the probation ends
-  std::string path_;             // of what is on probation
-  std::vector<std::unique_ptr<engine::LogWriter>> logs_;
-  std::vector<std::pair<std::string, std::string>> news_;
-  int done_ = 0;
+  bool settled_ = true;  // no probation: now_ is what it is until an offer takes over
+
+  // --- Between the threads, without it. ---
+  std::atomic<bool> waits_{false};  // for the end of a probation
+  core::Ring<Report> reports_{16};
+  core::Ring<ReloadNews> refusals_{16};
+
+  // --- Of the tick; now_ also of the thread beside, while settled_. ---
+  std::unique_ptr<ReloadCandidate> now_;
+  std::unique_ptr<ReloadCandidate> former_;  // that a fault brings back; nullptr: no probation
+  std::unique_ptr<ReloadCandidate> failed_;  // taken back, not handed over yet
+  std::int64_t proven_at_ = 0;               // tick at which the probation ends
+  core::Ring<ReloadNews> news_{8};
+  int done_ = 0;  // loops that took over, those taken back too
 };
 
 }  // namespace footfall::lab

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -11,10 +12,11 @@
 
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
-#include "lab/run/log_setup.h"
 
 namespace footfall::lab {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kMostAttempts = 10;
 
@@ -63,6 +65,64 @@ std::string changed_file(const FileDigests& before, const FileDigests& now) {
 
 }  // namespace
 
+RunOutputs::~RunOutputs() {
+  try {
+    close();
+  } catch (const std::exception&) {
+    // Whoever wants to know calls close().
+  }
+}
+
+void RunOutputs::open(const std::string& path, const core::SignalTable& signals,
+                      const engine::LogHeader& header) {
+  fs::create_directories(fs::path(path).parent_path());
+  writer_ = std::make_unique<engine::LogWriter>(path + ".part", signals, header);
+  path_ = path;
+}
+
+void RunOutputs::name() {
+  if (path_.empty() || named_ || !used) return;
+  named_ = true;
+  std::error_code gone;  // the log goes on under the name that it has
+  fs::rename(path_ + ".part", path_, gone);
+}
+
+void RunOutputs::close() {
+  if (writer_ == nullptr) return;
+  name();
+  const std::unique_ptr<engine::LogWriter> writer = std::move(writer_);
+  if (used) {
+    writer->close();
+    return;
+  }
+  std::error_code ignored;
+  fs::remove(path_ + ".part", ignored);
+  fs::remove(fs::path(path_).parent_path(), ignored);  // if nobody has put anything else there
+}
+
+std::string reload_log(const std::string& folder, int number) {
+  return fmt::format("{}/reload-{}/log.mcap", folder, number);
+}
+
+std::unique_ptr<RunOutputs> open_outputs(ReloadCandidate& stage, const LogContinuation& continues,
+                                         const ReloadSetup& setup) {
+  auto outputs = std::make_unique<RunOutputs>();
+  if (!setup.folder.empty()) {
+    engine::LogHeader header = stage.header;
+    header.setup = setup_text(stage.header.setup, continues);
+    try {
+      outputs->open(reload_log(setup.folder, continues.number), stage.behavior->signals, header);
+    } catch (const std::exception& problem) {
+      if (setup.tell) {
+        setup.tell(fmt::format("the run would go on without a log: {}", problem.what()));
+      }
+    }
+  }
+  outputs->log = std::make_unique<RunLog>(*stage.loop, outputs->writer(), setup.said);
+  if (setup.live != nullptr) outputs->live = setup.live->prepare(*stage.loop);
+  return outputs;
+}
+
 FileDigests robot_files(const behaviors::Behavior& behavior) {
   FileDigests digests;
   behaviors::Behavior robot_alone;
@@ -100,8 +160,9 @@ ReloadCandidate prepare_reload(const std::string& path,
   }
   if (!candidate.reasons.empty()) return candidate;
   try {
-    candidate.loop =
+    candidate.own =
         std::make_unique<engine::ControlLoop>(behavior, *setup.hardware, setup.source.settings);
+    candidate.loop = candidate.own.get();
   } catch (const std::exception& error) {
     candidate.reasons.emplace_back(error.what());
     return candidate;

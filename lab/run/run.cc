@@ -1,14 +1,12 @@
-// The loop around the loop; see run.h.
+// What a run attaches to the executive; see run.h.
 #include "lab/run/run.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
-#include <utility>
 
-#include "engine/realtime/pacer.h"
+#include "engine/realtime/executive.h"
 #include "lab/run/reload.h"
 #include "lab/run/run_log.h"
 
@@ -23,211 +21,155 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::int64_t ns_since(Clock::time_point start) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
-}
-
-class Run {
+// Figures, log and scheduled events of a run, and what else than the loop ends it.
+class Recorder final : public engine::TickObserver {
  public:
-  Run(engine::ControlLoop& loop, RunSpec& spec)
-      : loop_(&loop),
-        spec_(spec),
-        metrics_(loop),
-        log_(std::make_unique<RunLog>(loop, spec.log, spec.said)) {
-    states_before_.reserve(loop.behavior().states.size());
+  Recorder(engine::ControlLoop& loop, RunSpec& spec)
+      : spec_(spec), metrics_(loop), first_log_(loop, spec.log, spec.said), log_(&first_log_) {
+    log_->begin();
   }
 
-  RunResult execute() {
-    loop_->start();
+  void started(engine::ControlLoop& loop) override {
     log_->after_start();
-    for (const engine::EditBatch& edit : goal_edits(loop_->behavior(), spec_)) {
-      const engine::EditReply reply = loop_->edits().submit(edit);
+    for (const engine::EditBatch& edit : goal_edits(loop.behavior(), spec_)) {
+      const engine::EditReply reply = loop.edits().submit(edit);
       if (!reply.accepted()) throw std::runtime_error("--goal: error: " + reply.reasons.front());
     }
-    if (spec_.link) spec_.link->start();
-    engine::Pacer pacer(loop_->period());
     started_ = Clock::now();
-    while (!ended()) {
-      if (spec_.realtime && !pacer.wait()) result_.faults.add(core::Fault::tick_overrun);
-      one_tick();
+  }
+
+  bool ends(const engine::ControlLoop& loop) override {
+    if (metrics_.counter().swing_too_long()) {
+      end_ = RunEnd::fall;
+    } else if (spec_.max_steps > 0 && metrics_.counter().steps() >= spec_.max_steps) {
+      end_ = RunEnd::steps;
+    } else if (spec_.max_time > 0.0 && loop.time() + 0.5 * loop.period() >= spec_.max_time) {
+      end_ = RunEnd::time;
+    } else {
+      return false;
     }
-    loop_->safe_stop();
-    if (spec_.link) spec_.link->stop();
-    finish();
-    return std::move(result_);
+    return true;
   }
 
- private:
-  // Where the robot is told to be; the origin if its behavior has no goal.
-  std::array<double, 2> current_goal() const {
-    if (!has_goal(loop_->behavior())) return {};
-    const auto slot = static_cast<std::size_t>(loop_->behavior().planners.front().goal_slot);
-    return {loop_->machine().parameters()[slot], loop_->machine().parameters()[slot + 1]};
-  }
-
-  void one_tick() {
-    take_answers();
-    fire_events();
-    if (spec_.reloads) reload();
+  void before_tick(engine::ControlLoop& loop) override {
+    take_answers(loop);
+    tell_news();
+    fire_events(loop);
     if (spec_.observer) {
       spec_.observer->before_tick(
           {metrics_.counter().steps(), last_step_at_, metrics_.last_step_duration()}, *log_);
     }
-    loop_->sense();
-    // A fault's tick enters `safe`: what ended the run is told by the states before it.
-    const auto active = loop_->machine().active_atomic();
-    states_before_.assign(active.begin(), active.end());
-    compute();
-    if (spec_.reloads && spec_.reloads->take_back()) {
-      log_->after_tick({});  // what the faulty tick was; the hardware never sees it
-      go_on();
-      compute();
-    }
-    const StepEvent step = metrics_.observe(current_goal());
-    if (step.foot >= 0) last_step_at_ = loop_->time();
+    log_->before_tick();
+  }
+
+  void after_compute(engine::ControlLoop& loop) override {
+    const StepEvent step = metrics_.observe(current_goal(loop));
+    if (step.foot >= 0) last_step_at_ = loop.time();
     log_->after_tick(step);
     if (spec_.observer) spec_.observer->after_tick();
-    loop_->actuate();
-    if (spec_.status && loop_->ticks() % 256 == 0) show_status();
   }
 
-  void compute() {
-    const Clock::time_point before = Clock::now();
-    if (spec_.arm_allocations) spec_.arm_allocations(true);
-    loop_->compute();
-    if (spec_.link && binding_ == nullptr) spec_.link->post(*loop_, ns_since(before));
-    if (spec_.arm_allocations) spec_.arm_allocations(false);
-    result_.tick_time.add(ns_since(before));
-  }
+  void withdrawn(engine::ControlLoop& /*loop*/) override { log_->after_tick({}); }
 
-  void reload() {
-    for (ScheduledReload& next : spec_.reload_at) {
-      if (next.path.empty() || loop_->time() + 0.5 * loop_->period() < next.at_time) continue;
-      spec_.reloads->request(std::exchange(next.path, ""));
-    }
-    if (spec_.link) bind_link();
-    const bool linked = spec_.link == nullptr || (binding_ == nullptr && spec_.link->rebound());
-    if (linked && spec_.reloads->swap()) {
-      go_on();
-    } else {
-      tell_news();
-    }
-  }
-
-  // With another loop, from where the one before is.
-  void go_on() {
+  void exchanged(engine::ControlLoop& now) override {
     tell_news();
-    loop_ = &spec_.reloads->now();
-    metrics_.go_on(*loop_);
-    log_ = std::make_unique<RunLog>(*loop_, spec_.reloads->log(), spec_.said);
-    states_before_.reserve(loop_->behavior().states.size());
-    log_->event("reload", "begins", loop_->behavior().name);
-    if (spec_.link) binding_ = spec_.link->prepare(*loop_);
-    if (spec_.link) bind_link();
-    if (spec_.on_reload) spec_.on_reload(*loop_);
-    ++result_.reloads;
+    metrics_.go_on(now);
+    log_ = &spec_.reloads->log();
+    log_->begin();
+    log_->before_tick();
+    log_->event("reload", "begins", now.behavior().name);
   }
 
-  // The link takes one loop after the other.
-  void bind_link() {
-    if (binding_ != nullptr && spec_.link->rebound()) spec_.link->rebind(std::move(binding_));
-  }
+  const StepCounter& steps() const { return metrics_.counter(); }
+  RunLog& log() { return *log_; }
+  RunEnd end() const { return end_; }
+  RunFigures figures(bool fell) const { return metrics_.figures(fell); }
+  double wall_time() const { return seconds_since(started_); }  // s
 
-  void tell_news() {
-    for (const auto& [what, detail] : spec_.reloads->take_news()) {
-      log_->event("reload", what, detail);
-    }
+ private:
+  // The position that the robot is to go to; the origin if its behavior has no goal.
+  static std::array<double, 2> current_goal(const engine::ControlLoop& loop) {
+    if (!has_goal(loop.behavior())) return {};
+    const auto slot = static_cast<std::size_t>(loop.behavior().planners.front().goal_slot);
+    return {loop.machine().parameters()[slot], loop.machine().parameters()[slot + 1]};
   }
 
   // Nobody waits for them here; what was applied is in the log.
-  void take_answers() {
+  static void take_answers(engine::ControlLoop& loop) {
     engine::EditAnswer answer;
-    while (loop_->edits().take_answer(answer)) {
+    while (loop.edits().take_answer(answer)) {
     }
   }
 
-  void fire_events() {
+  void tell_news() {
+    ReloadNews news;
+    while (spec_.reloads != nullptr && spec_.reloads->take_news(news)) {
+      log_->event("reload", news.what.view(), news.detail.view());
+    }
+  }
+
+  void fire_events(const engine::ControlLoop& loop) {
     for (ScheduledEvent& event : spec_.events) {
-      if (!event.fire || !due(event)) continue;
+      if (!event.fire || !due(event, loop)) continue;
       event.fire();
       event.fire = nullptr;
       log_->event("push", event.label, "");
     }
   }
 
-  bool due(const ScheduledEvent& event) const {
+  bool due(const ScheduledEvent& event, const engine::ControlLoop& loop) const {
     // Half a period: times are whole numbers of periods up to round-off.
-    const double now = loop_->time() + 0.5 * loop_->period();
+    const double now = loop.time() + 0.5 * loop.period();
     if (event.at_time) return now >= *event.at_time;
     if (metrics_.counter().steps() < event.at_step) return false;
     return now >= last_step_at_ + event.phase * metrics_.last_step_duration();
   }
 
-  bool ended() {
-    if (spec_.stop && spec_.stop->load()) return end_with(RunEnd::stopped);
-    switch (loop_->state()) {
-      case engine::LoopState::running:
-        break;
-      case engine::LoopState::finished:
-        return end_with(RunEnd::finished);
-      case engine::LoopState::fallen:
-        return end_with(RunEnd::fall);
-      case engine::LoopState::stopped:
-        return end_with(RunEnd::fault);
-    }
-    if (metrics_.counter().swing_too_long()) {
-      result_.faults.add(core::Fault::swing_too_long);
-      return end_with(RunEnd::fall);
-    }
-    if (spec_.max_steps > 0 && metrics_.counter().steps() >= spec_.max_steps) {
-      return end_with(RunEnd::steps);
-    }
-    if (spec_.max_time > 0.0 && loop_->time() + 0.5 * loop_->period() >= spec_.max_time) {
-      return end_with(RunEnd::time);
-    }
-    return false;
-  }
-
-  bool end_with(RunEnd end) {
-    result_.end = end;
-    return true;
-  }
-
-  void show_status() {
-    const double wall = seconds_since(started_);
-    if (wall - last_status_ < 0.2) return;
-    last_status_ = wall;
-    spec_.status({loop_->time(), metrics_.counter().steps(), log_->state_name(),
-                  loop_->time() / wall, spec_.reloads ? spec_.reloads->note() : ""});
-  }
-
-  void finish() {
-    result_.wall_time = seconds_since(started_);
-    result_.real_time_factor = result_.wall_time > 0.0 ? loop_->time() / result_.wall_time : 0.0;
-    result_.figures = metrics_.figures(result_.end == RunEnd::fall);
-    if (result_.end == RunEnd::fall || result_.end == RunEnd::fault) {
-      result_.cause = explain_end(*loop_, metrics_.counter(), states_before_);
-    }
-    result_.worst = worst_faults(*loop_);
-    for (std::size_t i = 0; i < result_.faults.count.size(); ++i) {
-      result_.faults.count[i] += loop_->faults().count[i];
-      result_.faults.count[i] += loop_->machine().faults().count[i];
-    }
-    if (spec_.allocations) result_.allocations = spec_.allocations();
-    log_->event("end", run_end_name(result_.end), result_.cause ? result_.cause->text : "");
-  }
-
-  engine::ControlLoop* loop_;  // that runs now
   RunSpec& spec_;
   RunMetrics metrics_;
-  std::unique_ptr<RunLog> log_;
-  std::shared_ptr<engine::LinkBinding> binding_;  // that the link is to take when it can
-  RunResult result_;
-  Clock::time_point started_;
-  std::vector<int> states_before_;  // active atomic states at the start of the tick
-  double last_status_ = 0.0;
-  double last_step_at_ = 0.0;
+  RunLog first_log_;
+  RunLog* log_;  // of the loop that runs
+  RunEnd end_ = RunEnd::time;
+  Clock::time_point started_ = Clock::now();
+  double last_step_at_ = 0.0;  // s
 };
+
+// Shows where the run is, about five times a second of wall time.
+class StatusLine final : public engine::TickObserver {
+ public:
+  StatusLine(const RunSpec& spec, Recorder& recorder) : spec_(spec), recorder_(recorder) {}
+
+  void before_tick(engine::ControlLoop& loop) override {
+    if (loop.ticks() % 256 != 0) return;
+    const double wall = recorder_.wall_time();
+    if (wall - last_ < 0.2) return;
+    last_ = wall;
+    spec_.status({loop.time(), recorder_.steps().steps(), recorder_.log().state_name(),
+                  loop.time() / wall, spec_.reloads ? spec_.reloads->note() : ""});
+  }
+
+ private:
+  const RunSpec& spec_;
+  Recorder& recorder_;
+  double last_ = 0.0;  // s
+};
+
+RunEnd end_of(const engine::ControlLoop& loop) {
+  switch (loop.state()) {
+    case engine::LoopState::finished:
+      return RunEnd::finished;
+    case engine::LoopState::fallen:
+      return RunEnd::fall;
+    default:
+      return RunEnd::fault;
+  }
+}
+
+void add_faults(const engine::ControlLoop& loop, core::FaultCounters& faults) {
+  for (std::size_t i = 0; i < faults.count.size(); ++i) {
+    faults.count[i] += loop.faults().count[i] + loop.machine().faults().count[i];
+  }
+}
 
 }  // namespace
 
@@ -266,6 +208,40 @@ std::vector<engine::EditBatch> goal_edits(const behaviors::Behavior& behavior,
   return edits;
 }
 
-RunResult run(engine::ControlLoop& loop, RunSpec& spec) { return Run(loop, spec).execute(); }
+RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
+  Recorder recorder(loop, spec);
+  StatusLine status(spec, recorder);
+  engine::Executive executive(
+      loop, {spec.realtime, spec.stop, spec.live, spec.reloads, spec.arm_allocations});
+  executive.attach(recorder);
+  if (spec.status) executive.attach(status);
+  engine::ExecutiveEnd end{};
+  try {
+    end = executive.run();
+  } catch (const engine::RunInterrupted& error) {
+    recorder.log().event("end", "error", error.what());
+    throw;
+  }
+  const engine::ControlLoop& last = executive.loop();
+  RunResult result;
+  result.wall_time = recorder.wall_time();
+  result.real_time_factor = result.wall_time > 0.0 ? last.time() / result.wall_time : 0.0;
+  result.end = end == engine::ExecutiveEnd::asked      ? RunEnd::stopped
+               : end == engine::ExecutiveEnd::observer ? recorder.end()
+                                                       : end_of(last);
+  result.figures = recorder.figures(result.end == RunEnd::fall);
+  if (result.end == RunEnd::fall || result.end == RunEnd::fault) {
+    result.cause = explain_end(last, recorder.steps(), recorder.log().states_before());
+  }
+  result.worst = worst_faults(last);
+  if (end == engine::ExecutiveEnd::observer && result.end == RunEnd::fall)
+    result.faults.add(core::Fault::swing_too_long);
+  add_faults(last, result.faults);
+  result.tick_time = executive.tick_time();
+  if (spec.allocations) result.allocations = spec.allocations();
+  result.reloads = executive.exchanges();
+  recorder.log().event("end", run_end_name(result.end), result.cause ? result.cause->text : "");
+  return result;
+}
 
 }  // namespace footfall::lab

@@ -1,5 +1,6 @@
-// One run in lock-step or paced: ticks the control loop until something ends it, fires scheduled
-// events (pushes), moves the goal, feeds metrics and log. The only loop around ControlLoop.
+// One run in lock-step or paced, as an experiment: the executive ticks the control loop, and what
+// is attached here fires scheduled events (pushes), moves the goal, feeds metrics, log and status
+// line and ends the run after so many steps or seconds.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 #include <vector>
 
 #include "core/realtime/timing_histogram.h"
-#include "engine/lcm/link.h"
+#include "engine/live/port.h"
 #include "engine/log/writer.h"
 #include "engine/tick/control_loop.h"
 #include "lab/run/end.h"
@@ -34,12 +35,6 @@ struct RunStatus {
   std::string state;  // path of the first active atomic state
   double real_time_factor = 0.0;
   std::string note;  // what is to be known besides; mostly empty
-};
-
-// A file that is to take over from a time on.
-struct ScheduledReload {
-  double at_time = 0.0;  // s
-  std::string path;
 };
 
 class Reloads;
@@ -69,13 +64,10 @@ struct RunSpec {
   std::optional<std::array<double, 2>> goal_velocity;  // m/s, world; the goal moves from the start
   std::vector<ScheduledEvent> events;
   RunObserver* observer = nullptr;
-  Reloads* reloads = nullptr;              // null: the behavior stays what it is
-  std::vector<ScheduledReload> reload_at;  // loaded and checked then, the run waiting
-  // Another loop goes on from here; the one before is still there. Between two ticks.
-  std::function<void(engine::ControlLoop& now)> on_reload;
-  bool realtime = false;  // paced by the wall clock
+  Reloads* reloads = nullptr;  // null: the behavior stays what it is
+  bool realtime = false;       // paced by the wall clock
   engine::LogWriter* log = nullptr;
-  engine::LcmLink* link = nullptr;  // live tuning, not started yet; stopped when the run ends
+  engine::LivePort* live = nullptr;              // not started yet; stopped when the run ends
   const std::atomic<bool>* stop = nullptr;       // set by Ctrl-C
   std::function<void(const RunStatus&)> status;  // about five times a second of wall time
   // What a `log:` action or a script said, at its time, s; outside of the tick.
@@ -98,8 +90,8 @@ struct RunResult {
   int reloads = 0;  // done, those taken back counted twice
 };
 
-// Runs from start to end. Throws what ControlLoop::start() throws, and std::runtime_error if the
-// goal is out of its range; nothing after that.
+// Runs from start to end. Throws what engine::Executive::run() throws, and std::runtime_error if
+// the goal is out of its range; the robot was stopped before.
 RunResult run(engine::ControlLoop& loop, RunSpec& spec);
 
 // The edits that spec.goal and spec.goal_velocity mean: the goal at once, then moving until the run

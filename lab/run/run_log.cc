@@ -39,9 +39,19 @@ RunLog::RunLog(engine::ControlLoop& loop, engine::LogWriter* log, Said said)
     : loop_(loop),
       log_(log),
       said_(std::move(said)),
-      seen_faults_(loop.faults()),
       last_targets_(loop.behavior().planners.size()) {
+  trace_.size_for(loop.behavior());
+  states_before_.reserve(loop.behavior().states.size());
+}
+
+void RunLog::begin() {
+  seen_faults_ = loop_.faults();
   if (log_ != nullptr) loop_.record(trace_);
+}
+
+void RunLog::before_tick() noexcept {
+  const auto active = loop_.machine().active_atomic();
+  states_before_.assign(active.begin(), active.end());
 }
 
 std::string RunLog::state_name() const {

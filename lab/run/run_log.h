@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,13 +19,20 @@ namespace footfall::lab {
 class RunLog {
  public:
   using Said = std::function<void(double time, const std::string& text)>;
-  // Before the loop starts. log may be null: then only state_name() does anything, and `said`, if
-  // there is one, is told what `log:` actions and scripts say.
+  // Makes room, and leaves the loop as it is; any thread. log may be null: then nothing is written,
+  // and `said`, if there is one, is told what `log:` actions and scripts say.
   RunLog(engine::ControlLoop& loop, engine::LogWriter* log, Said said = nullptr);
+  // Before the loop's first tick, or its first since it took over: records from then on. Allocates
+  // nothing.
+  void begin();
   void after_start();
+  // Before a tick's compute(): the states that are active now. Allocates nothing.
+  void before_tick() noexcept;
   void after_tick(const StepEvent& step);
   void event(std::string_view kind, std::string_view name, std::string_view detail);
   std::string state_name() const;
+  // Atomic states at the start of the tick: what a fault's tick has left.
+  std::span<const int> states_before() const noexcept { return states_before_; }
 
  private:
   void write_edits();
@@ -38,6 +46,7 @@ class RunLog {
   engine::InputTrace trace_;
   core::FaultCounters seen_faults_;
   std::vector<std::array<double, 3>> last_targets_;
+  std::vector<int> states_before_;
 };
 
 // What a run was made from besides its behavior.

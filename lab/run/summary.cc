@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 namespace footfall::lab {
 namespace {
@@ -96,6 +97,24 @@ std::string faults_text(const RunResult& result) {
   return fmt::format("  faults       {}\n", text.empty() ? "none" : text);
 }
 
+std::string torque_loops_text(const RunIdentity& id) {
+  std::string text;
+  for (const UnusedTorqueLoop& loop : id.unused_torque_loops) {
+    text += fmt::format("{}'{}' of {} joint{}", text.empty() ? "" : ", ", loop.name, loop.joints,
+                        loop.joints == 1 ? "" : "s");
+  }
+  return fmt::format("  torque loop  {} not used: backend {} applies torques directly\n", text,
+                     id.backend);
+}
+
+Json torque_loops_json(const RunIdentity& id) {
+  Json out = Json::array();
+  for (const UnusedTorqueLoop& loop : id.unused_torque_loops) {
+    out.push_back({{"name", loop.name}, {"joints", loop.joints}});
+  }
+  return out;
+}
+
 Json tick_json(const core::TimingHistogram& h) {
   return {{"p50", h.percentile(0.5) * 1e-3},
           {"p99", h.percentile(0.99) * 1e-3},
@@ -103,6 +122,23 @@ Json tick_json(const core::TimingHistogram& h) {
 }
 
 }  // namespace
+
+std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& behavior,
+                                                  const hal::Hardware& hardware) {
+  std::vector<UnusedTorqueLoop> unused;
+  if (hardware.uses_torque_loop()) return unused;
+  for (std::size_t table = 0; table < behavior.torque_loops.size(); ++table) {
+    std::set<std::size_t> joints;
+    for (const behaviors::ControlSpec& control : behavior.controls) {
+      for (std::size_t j = 0; j < control.torque_loops.size(); ++j) {
+        if (control.torque_loops[j] == static_cast<int>(table)) joints.insert(j);
+      }
+    }
+    if (joints.empty()) continue;  // `check` warns of a table that no state uses
+    unused.push_back({behavior.torque_loops[table].name, static_cast<int>(joints.size())});
+  }
+  return unused;
+}
 
 Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_only) {
   const RunFigures& f = result.figures;
@@ -136,6 +172,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["worst_fault"] = worst_json(result);
   const bool let_go = result.end == RunEnd::finished || result.cause.has_value();
   out["end_torque_step_Nm"] = settled && let_go ? Json(f.end_torque_step) : Json();
+  out["unused_torque_loops"] = torque_loops_json(id);
   out["max_distance_m"] = f.max_distance;
   out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
   out["clearance_min_m"] = f.steps > 0 ? Json(f.worst_clearance) : Json();
@@ -197,6 +234,7 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   text += fmt::format("  tick         {:.1f} us median, {:.1f} us p99.9; {:.0f} x real time\n",
                       result.tick_time.percentile(0.5) * 1e-3,
                       result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);
+  if (!id.unused_torque_loops.empty()) text += torque_loops_text(id);
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
   return text;
 }

@@ -5,16 +5,26 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "lab/run/run.h"
 
 namespace footfall::lab {
+
+// A `torque_loop:` table of the behavior that the backend has no use for.
+struct UnusedTorqueLoop {
+  std::string name;
+  int joints = 0;  // that some state gives it to
+};
+std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& behavior,
+                                                  const hal::Hardware& hardware);
 
 struct RunIdentity {
   std::string behavior, robot, world, backend;
   std::uint64_t seed = 0;
   std::string log;      // path, empty: none
   std::string physics;  // one line: what is behind the figures
+  std::vector<UnusedTorqueLoop> unused_torque_loops{};
 };
 
 // `physics_only` leaves out what a wall clock measured (tick_us, real_time_factor).

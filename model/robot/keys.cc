@@ -111,6 +111,10 @@ constexpr KeySpec kLimitsRows[] = {
     key("edit_ramp", quantity(kTime),
         "minimum ramp duration of values changed by a user during a run")
         .otherwise("100 ms"),
+    key("overruns", integer(1, 1'000'000),
+        "late ticks in a row, after which `tick.overrun` has its reaction; single ones are counted "
+        "and logged")
+        .otherwise("15"),
     key("reload_watch", quantity(kTime),
         "trial time after a reload, in which a fault with a reaction restores the former behavior")
         .otherwise("2 s"),

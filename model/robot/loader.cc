@@ -338,6 +338,10 @@ class RobotLoader {
     read("height", core::kNone, 1.0, "a part of the standing height", robot_.height_limit);
     read("torque_step", core::kTorque, kInfinity, {}, robot_.torque_step_limit);
     read("edit_ramp", core::kTime, 10.0, "a time of at most 10 s", robot_.edit_ramp);
+    if (const YamlNode* const overruns = node.find("overruns")) {
+      const auto count = core::read_integer(*overruns, 1, 1'000'000, diagnostics_);
+      robot_.overruns = static_cast<int>(count.value_or(robot_.overruns));
+    }
     read("reload_watch", core::kTime, 60.0, "a time of at most 60 s", robot_.reload_watch);
   }
 

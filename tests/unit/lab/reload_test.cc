@@ -7,8 +7,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <utility>
 
 #include "behaviors/check/physics/check.h"
+#include "core/realtime/allocation_count.h"
+#include "engine/realtime/executive.h"
 #include "lab/log/reader.h"
 #include "lab/replay/replay.h"
 #include "lab/run/run.h"
@@ -28,6 +32,63 @@ std::string source(const std::string& file) {
 
 const std::string kBalance = source("behaviors/library/balance_best.yaml");
 
+// A file that is to take over from a time on.
+struct Request {
+  double time = 0.0;  // s
+  std::string path;
+};
+
+// What stands beside a run with `--reload`, in the run's own thread, so that runs repeat.
+class Beside final : public lab::RunObserver {
+ public:
+  Beside(const engine::ControlLoop& first, lab::Reloads& reloads, std::vector<Request> requests)
+      : period_(first.period()), reloads_(reloads), requests_(std::move(requests)) {}
+  void before_tick(const lab::StepClock& /*steps*/, lab::RunLog& /*log*/) override {
+    const double time = static_cast<double>(tick_++) * period_;
+    for (Request& next : requests_) {
+      if (next.path.empty() || time < next.time) continue;
+      reloads_.request(std::exchange(next.path, ""));
+    }
+    reloads_.tend();
+  }
+  void after_tick() override {}
+
+ private:
+  double period_;
+  std::int64_t tick_ = 0;
+  lab::Reloads& reloads_;
+  std::vector<Request> requests_;
+};
+
+// Counts the heap calls of swaps, those back too, with all that they set off in the executive and
+// its observers.
+class Counted final : public engine::LoopExchange {
+ public:
+  explicit Counted(lab::Reloads& reloads) : reloads_(reloads) {}
+  engine::ControlLoop* swap() override {
+    return count([&] { return reloads_.swap(); });
+  }
+  engine::ControlLoop* take_back() override {
+    return count([&] { return reloads_.take_back(); });
+  }
+  std::unique_ptr<engine::LiveBinding> take_binding() override { return reloads_.take_binding(); }
+  std::function<void()> before, after;  // a swap
+  int swaps = 0;
+
+ private:
+  template <class Step>
+  engine::ControlLoop* count(const Step& step) {
+    if (before) before();
+    core::arm_allocation_count(true);
+    engine::ControlLoop* const now = step();
+    core::arm_allocation_count(false);
+    if (after) after();
+    swaps += now != nullptr ? 1 : 0;
+    return now;
+  }
+  lab::Reloads& reloads_;
+};
+
 class Reload : public testing::Test {
  protected:
   void SetUp() override {
@@ -43,9 +104,7 @@ class Reload : public testing::Test {
     std::ofstream(path(name), std::ios::binary) << text;
   }
 
-  // Runs first.yaml and loads the files at their times.
-  lab::RunResult run(const std::vector<lab::ScheduledReload>& files) {
-    Rig rig(path("first.yaml"), 1);
+  lab::ReloadSetup setup(const Rig& rig) {
     lab::ReloadSetup setup;
     setup.hardware = rig.backend.get();
     setup.load.search = {FOOTFALL_SOURCE_DIR};
@@ -53,15 +112,22 @@ class Reload : public testing::Test {
     setup.folder = folder_.string();
     setup.print = [this](const core::Diagnostics& found) { printed_ += found.to_string(); };
     setup.tell = [this](const std::string& line) { told_ += line + "\n"; };
+    return setup;
+  }
+
+  // Runs first.yaml and loads the files at their times.
+  lab::RunResult run(const std::vector<Request>& files, double end = kEnd) {
+    Rig rig(path("first.yaml"), 1);
+    const lab::ReloadSetup how = setup(rig);
     engine::LogWriter log(path("log.mcap"), rig.behavior->signals,
-                          lab::make_log_header(*rig.behavior, setup.source));
-    lab::Reloads reloads(*rig.loop, &log, setup);
+                          lab::make_log_header(*rig.behavior, how.source));
+    lab::Reloads reloads(*rig.loop, how);
+    Beside beside(*rig.loop, reloads, files);
     lab::RunSpec spec;
-    spec.max_time = kEnd;
+    spec.max_time = end;
     spec.log = &log;
     spec.reloads = &reloads;
-    spec.reload_at = files;
-    spec.on_reload = [this](engine::ControlLoop& now) { names_.push_back(now.behavior().name); };
+    spec.observer = &beside;
     const lab::RunResult result = lab::run(*rig.loop, spec);
     log.close();
     reloads.close();
@@ -70,6 +136,15 @@ class Reload : public testing::Test {
 
   lab::Log read(const std::string& name) const {
     return lab::read_log(path(name), {.all_rows = true, .inputs = true});
+  }
+
+  // Of the behaviors that ran, by their logs.
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (int k = 1; fs::exists(lab::reload_log(folder_.string(), k)); ++k) {
+      names.push_back(lab::read_log(lab::reload_log(folder_.string(), k)).run.at("behavior"));
+    }
+    return names;
   }
 
   // Whether the logs of the run replay bit for bit, one after the other.
@@ -92,7 +167,6 @@ class Reload : public testing::Test {
 
   fs::path folder_;
   std::string printed_, told_;
-  std::vector<std::string> names_;
 };
 
 TEST_F(Reload, TheLogGoesOnInItsOwnFolderAndAllOfItReplays) {
@@ -100,7 +174,8 @@ TEST_F(Reload, TheLogGoesOnInItsOwnFolderAndAllOfItReplays) {
   const lab::RunResult result = run({{kAt, path("second.yaml")}});
   EXPECT_EQ(result.reloads, 1);
   EXPECT_EQ(result.end, lab::RunEnd::time);
-  EXPECT_EQ(names_, std::vector<std::string>{"second"});
+  EXPECT_EQ(names(), std::vector<std::string>{"second"});
+  EXPECT_FALSE(fs::exists(path("reload-2")));  // the way back that nobody needed
   EXPECT_NE(told_.find("second.yaml: reloaded at"), std::string::npos) << told_;
   const lab::Log first = read("log.mcap"), second = read("reload-1/log.mcap");
   EXPECT_EQ(second.inputs.first_tick, first.inputs.first_tick + first.inputs.ticks());
@@ -143,10 +218,91 @@ templates:
   const lab::RunResult result = run({{kAt, path("faulty.yaml")}});
   EXPECT_EQ(result.reloads, 2);
   EXPECT_EQ(result.end, lab::RunEnd::time);
-  EXPECT_EQ(names_, (std::vector<std::string>{"faulty", "first"}));
+  EXPECT_EQ(names(), (std::vector<std::string>{"faulty", "first"}));
   EXPECT_NE(told_.find("taken back at"), std::string::npos) << told_;
   EXPECT_NE(told_.find("fault execution"), std::string::npos) << told_;
   expect_replay(2);
+}
+
+TEST_F(Reload, AfterTheProbationTheNumberOfTheUnusedWayBackIsTheNextOnes) {
+  write("robot.yaml",
+        "base: " + source("robots/hume/robot.yaml") + "\nlimits: {reload_watch: 300 ms}\n");
+  write("first.yaml", "base: " + kBalance + "\nrobot: robot.yaml\n");
+  write("second.yaml", "base: first.yaml\ngains: {single: {swing: {kp: 380}}}\n");
+  write("third.yaml", "base: first.yaml\ngains: {single: {swing: {kp: 390}}}\n");
+  // The third comes while the second is on probation, and waits for its end.
+  const lab::RunResult result = run({{kAt, path("second.yaml")}, {1.1, path("third.yaml")}}, 3.0);
+  EXPECT_EQ(result.reloads, 2);
+  EXPECT_EQ(names(), (std::vector<std::string>{"second", "third"}));
+  EXPECT_FALSE(fs::exists(path("reload-3")));
+  expect_replay(2);
+}
+
+TEST_F(Reload, OneThatNeverTakesOverLeavesNoFile) {
+  // In the last tick.
+  write("second.yaml", "base: first.yaml\n");
+  const lab::RunResult result = run({{kEnd - 0.001, path("second.yaml")}});
+  EXPECT_EQ(result.reloads, 0);
+  EXPECT_FALSE(fs::exists(path("reload-1")));
+}
+
+// All is there before: the folder of the logs is not even at its place when the loops change.
+TEST_F(Reload, TheSwapAndTheTakingBackAllocateNothingAndOpenNoFile) {
+  write("faulty.yaml", R"(base: first.yaml
+templates:
+  stride:
+    states:
+      lift: {on_entry: [{log: "{sqrt(0 - com.pos.z/1 m)}"}]}
+)");
+  Rig rig(path("first.yaml"), 1);
+  const lab::ReloadSetup how = setup(rig);
+  lab::Reloads reloads(*rig.loop, how);
+  Counted counted(reloads);
+  const fs::path elsewhere = folder_.string() + "_elsewhere";
+  counted.before = [&] { fs::rename(folder_, elsewhere); };
+  counted.after = [&] {
+    EXPECT_FALSE(fs::exists(folder_));
+    fs::rename(elsewhere, folder_);
+  };
+  // As in a run: the log of a loop that took over begins, and says so.
+  struct Log final : engine::TickObserver {
+    explicit Log(lab::Reloads& all) : reloads(all) {}
+    void before_tick(engine::ControlLoop& loop) override {
+      if (loop.ticks() == 1200) reloads.request(path);
+      reloads.tend();
+    }
+    bool ends(const engine::ControlLoop& loop) override { return loop.ticks() >= 3000; }
+    void after_compute(engine::ControlLoop& /*loop*/) override {
+      if (log != nullptr) log->after_tick({});
+    }
+    void withdrawn(engine::ControlLoop& /*loop*/) override { log->after_tick({}); }
+    void exchanged(engine::ControlLoop& now) override {
+      core::arm_allocation_count(true);
+      lab::ReloadNews news;
+      while (reloads.take_news(news)) {
+        if (log != nullptr) log->event("reload", news.what.view(), news.detail.view());
+      }
+      log = &reloads.log();
+      log->begin();
+      log->before_tick();
+      log->event("reload", "begins", now.behavior().name);
+      core::arm_allocation_count(false);
+    }
+    lab::Reloads& reloads;
+    std::string path;
+    lab::RunLog* log = nullptr;
+  } log(reloads);
+  log.path = path("faulty.yaml");
+  const std::int64_t before = core::allocation_count();
+  engine::Executive executive(*rig.loop, {.exchange = &counted});
+  executive.attach(log);
+  EXPECT_EQ(executive.run(), engine::ExecutiveEnd::observer);
+  EXPECT_EQ(counted.swaps, 2);
+  EXPECT_EQ(core::allocation_count() - before, 0);
+  reloads.close();
+  EXPECT_EQ(names(), (std::vector<std::string>{"faulty", "first"}));
+  const lab::Log back = read("reload-2/log.mcap");
+  EXPECT_EQ(back.inputs.first_tick + back.inputs.ticks(), 3000);
 }
 
 TEST_F(Reload, OfAnotherRobotIsRefused) {

@@ -9,9 +9,10 @@
 #include <fstream>
 #include <limits>
 
+#include "engine/realtime/executive.h"
 #include "lab/log/reader.h"
 #include "lab/run/run_log.h"
-#include "lab/run/summary.h"
+#include "tests/support/fake_robot.h"
 #include "tests/support/rig.h"
 
 namespace footfall::tests {
@@ -150,6 +151,60 @@ TEST(Run, EndsWithAFaultWhoseReactionIsToStop) {
   EXPECT_EQ(result.worst[0].joint, rig.behavior->robot.joints[2].name);
 }
 
+// Throws in the middle of a run.
+struct Broken final : lab::RunObserver {
+  void before_tick(const lab::StepClock& /*steps*/, lab::RunLog& /*log*/) override {
+    if (++ticks == 500) throw std::runtime_error("error: it broke");
+  }
+  void after_tick() override {}
+  int ticks = 0;
+};
+
+TEST(Run, AnExceptionLeavesALogThatCanBeReadAndSaysWhy) {
+  Rig rig("balance");
+  const std::string path = temporary("broken.mcap");
+  {
+    engine::LogWriter writer(path, rig.behavior->signals,
+                             lab::make_log_header(*rig.behavior, lab::LogSource{}));
+    Broken broken;
+    lab::RunSpec spec;
+    spec.log = &writer;
+    spec.observer = &broken;
+    EXPECT_THROW(lab::run(*rig.loop, spec), engine::RunInterrupted);
+  }
+  const lab::Log log = lab::read_log(path, {.all_rows = true, .inputs = true});
+  std::filesystem::remove(path);
+  EXPECT_EQ(log.inputs.first_tick + log.inputs.ticks(), 499);
+  ASSERT_FALSE(log.events.empty());
+  EXPECT_EQ(log.events.back().kind, "end");
+  EXPECT_EQ(log.events.back().name, "error");
+  EXPECT_NE(log.events.back().detail.find("it broke"), std::string::npos);
+}
+
+TEST(Run, AnExceptionOfTheStatusLineOrOfWhatListensStopsTheRobot) {
+  for (const bool status : {true, false}) {
+    StubRig rig(R"({behavior: 1, robot: hume, machine: {states: {
+      a: {contacts: [], after: 10 ms, to: b, on_exit: [{log: hello}]}, b: {contacts: []}}}})");
+    lab::RunSpec spec;
+    const auto fail = [] { throw std::runtime_error("nobody listens"); };
+    if (status) {
+      spec.status = [&](const lab::RunStatus& /*now*/) { fail(); };
+      spec.realtime = true;  // it comes five times a second
+    } else {
+      spec.said = [&](double /*time*/, const std::string& /*text*/) { fail(); };
+    }
+    EXPECT_THROW(lab::run(*rig.loop, spec), engine::RunInterrupted);
+    // A stopped stub moves nothing any more.
+    hal::Commands push;
+    push.tau.fill(10.0);
+    hal::Sensors before, after;
+    rig.stub->read(before);
+    for (int k = 0; k < 10; ++k) rig.stub->write(push);
+    rig.stub->read(after);
+    EXPECT_EQ(before.q, after.q);
+  }
+}
+
 // A `final` state without control commands no torque: its step is what the joints still gave.
 TEST(Run, TheStepOfLettingGoIsNotTheBehaviorsOwn) {
   const std::string path = temporary("let_go.yaml");
@@ -283,77 +338,6 @@ TEST(RunFigures, AreThoseOfTheLoggedSignals) {
     goal_error += std::hypot(x[row], y[row]) / 10.0;
   }
   EXPECT_NEAR(f.goal_error, goal_error, 1e-6);
-}
-
-TEST(Summary, HasEveryKeyThatScriptsRelyOn) {
-  Rig rig("balance");
-  lab::RunSpec spec;
-  spec.max_time = 3.0;
-  const lab::RunResult result = lab::run(*rig.loop, spec);
-  const auto json =
-      lab::summary_json({"balance", "hume", "flat", "mujoco", 7, "out/log.mcap", ""}, result);
-  for (const char* key : {"behavior",
-                          "robot",
-                          "world",
-                          "backend",
-                          "seed",
-                          "end",
-                          "steps",
-                          "time_s",
-                          "fell",
-                          "error",
-                          "foot_placement_m",
-                          "max_torque_step_Nm",
-                          "peak_torque_Nm",
-                          "goal_error_m",
-                          "path_length_m",
-                          "internal_force",
-                          "faults",
-                          "tick_us",
-                          "allocations",
-                          "real_time_factor",
-                          "log"}) {
-    EXPECT_TRUE(json.contains(key)) << key;
-  }
-  for (const char* angle : {"roll", "pitch", "yaw", "height"}) {
-    EXPECT_TRUE(json["error"][angle]["rms"].is_number()) << angle;
-    EXPECT_TRUE(json["error"][angle]["max"].is_number()) << angle;
-  }
-  EXPECT_EQ(json["seed"], 7);
-  EXPECT_EQ(json["end"], "time");
-  EXPECT_EQ(json["fell"], false);
-  EXPECT_TRUE(json["foot_placement_m"]["mean"].is_number());
-  EXPECT_TRUE(json["tick_us"]["p999"].is_number());
-  EXPECT_TRUE(json["allocations"].is_null());  // this program does not count them
-  EXPECT_TRUE(json["faults"].is_object());
-}
-
-TEST(Summary, WhatDoesNotApplyIsNull) {
-  Rig rig("balance");
-  lab::RunSpec spec;
-  spec.max_time = 0.1;  // before errors count and before any step
-  const lab::RunResult result = lab::run(*rig.loop, spec);
-  const auto json = lab::summary_json({"balance", "hume", "flat", "mujoco", 1, "", ""}, result);
-  for (const char* angle : {"roll", "pitch", "yaw", "height"}) {
-    EXPECT_TRUE(json["error"][angle].is_null()) << angle;
-  }
-  for (const char* key :
-       {"foot_placement_m", "goal_error_m", "log", "max_torque_step_Nm", "peak_torque_Nm"}) {
-    EXPECT_TRUE(json[key].is_null()) << key;
-  }
-  EXPECT_EQ(json["steps"], 0);
-}
-
-TEST(Summary, WhatAWallClockMeasuredIsInASecondFile) {
-  Rig rig("balance");
-  lab::RunSpec spec;
-  spec.max_time = 0.1;
-  const lab::RunResult result = lab::run(*rig.loop, spec);
-  const lab::RunIdentity id = {"balance", "hume", "flat", "mujoco", 1, "", ""};
-  const auto physics = lab::summary_json(id, result, true);
-  EXPECT_FALSE(physics.contains("tick_us"));
-  EXPECT_FALSE(physics.contains("real_time_factor"));
-  EXPECT_TRUE(lab::timing_json(result).contains("tick_us"));
 }
 
 TEST(ErrorFigure, IsRootMeanSquareAndLargestMagnitude) {

@@ -34,7 +34,7 @@ contacts:
 points: {head: {site: head_site}}
 symmetry: {swap: [[right_foot, left_foot], [right_leg, left_leg]]}
 sensors: {imu: {site: imu_site}, mocap: {sites: ["led_*", crown]}, switches: ["*_foot"]}
-limits: {tilt: 0.7 rad, height: 65 %, torque_step: 5 Nm, edit_ramp: 80 ms}
+limits: {tilt: 0.7 rad, height: 65 %, torque_step: 5 Nm, edit_ramp: 80 ms, overruns: 7}
 faults: {fall: safe_stop, imu.stale: safe_state, torque.limit: continue}
 )";
 
@@ -113,6 +113,7 @@ TEST_F(RobotDescriptionTest, AWholeFileIsRead) {
   EXPECT_DOUBLE_EQ(robot.height_limit, 0.65);
   EXPECT_DOUBLE_EQ(robot.torque_step_limit, 5);
   EXPECT_DOUBLE_EQ(robot.edit_ramp, 0.08);
+  EXPECT_EQ(robot.overruns, 7);
   EXPECT_EQ(robot.find_joint("left_hip"), 2);
   EXPECT_EQ(robot.find_contact("left_foot"), 1);
   EXPECT_EQ(robot.find_group("nobody"), -1);

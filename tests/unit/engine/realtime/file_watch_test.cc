@@ -65,6 +65,16 @@ TEST_F(Watched, AChangeIsToldOnceItHasSettled) {
   EXPECT_TRUE(told(3));
 }
 
+TEST_F(Watched, EachLookIsToldToo) {
+  write("a", "one");
+  std::atomic<int> looks{0};
+  engine::FileWatch watch(
+      {path("a")}, kInterval, [&] { return std::vector<std::string>{path("a")}; },
+      [&] { ++looks; });
+  for (int k = 0; k < 500 && looks < 3; ++k) std::this_thread::sleep_for(10ms);
+  EXPECT_GE(looks, 3);
+}
+
 // Many editors empty a file before they fill it.
 TEST_F(Watched, AnEmptyFileIsGivenTimeToBeFilled) {
   write("a", "one");

@@ -15,13 +15,11 @@ using std::chrono::milliseconds;
 TEST(Pacer, SleepsToTheEndOfEachPeriod) {
   Pacer pacer(0.02);
   const auto start = Clock::now();
-  int on_time = 0;
-  for (int k = 1; k <= 5; ++k) on_time += pacer.wait() ? 1 : 0;
+  for (int k = 1; k <= 5; ++k) pacer.wait();
   EXPECT_GE(Clock::now() - start, milliseconds(5 * 20));
-  EXPECT_EQ(on_time + pacer.overruns(), 5);
 }
 
-TEST(Pacer, AnOverrunIsCountedAndSkipsToTheNextBoundary) {
+TEST(Pacer, AnOverrunIsToldAndSkipsToTheNextBoundary) {
   constexpr auto kPause = milliseconds(500);
   Pacer pacer(0.5);
   const auto before = Clock::now();
@@ -29,13 +27,11 @@ TEST(Pacer, AnOverrunIsCountedAndSkipsToTheNextBoundary) {
   std::this_thread::sleep_for(kPause + milliseconds(150));
   EXPECT_FALSE(pacer.wait());  // late: it does not wait
   const auto late = Clock::now();
-  EXPECT_EQ(pacer.overruns(), 1);
   ASSERT_TRUE(pacer.wait());
   const auto next = Clock::now();
   // Boundary 3 of the clock, neither a burst (2) nor one too many (4).
   EXPECT_GE(next - before, 3 * kPause);
   EXPECT_LT(next - late, kPause);
-  EXPECT_EQ(pacer.overruns(), 1);
 }
 
 }  // namespace
