@@ -97,6 +97,41 @@ void set_goal(const RunOptions& options, const behaviors::Behavior& behavior, la
   }
 }
 
+// Summary, files beside the log, report, JSON. `id.log` is empty without a log, `link` null without
+// a network. Returns the report's exit code.
+int show_result(const RunOptions& options, const lab::RunIdentity& id, const lab::RunResult& result,
+                const engine::LcmLink* link) {
+  const bool log = !id.log.empty();
+  std::FILE* const text = options.json ? stderr : stdout;
+  if (log) {
+    core::write_whole_file(options.log + "/summary.json",
+                           lab::summary_json(id, result, true).dump(2) + "\n");
+    core::write_whole_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
+  }
+  if (!options.quiet) {
+    std::fputs(lab::summary_text(id, result).c_str(), text);
+    if (link) std::fputs(live_text(options.live, *link).c_str(), text);
+    if (log) fmt::print(text, "  log          {}\n", id.log);
+    if (log && result.reloads > 0) {
+      fmt::print(text, "  goes on in   {}{}\n", lab::reload_log(options.log, 1),
+                 result.reloads > 1 ? fmt::format(" ... reload-{}", result.reloads) : "");
+    }
+  }
+  int report_code = kGood;
+  if (log && !options.no_report) {
+    ReportArguments report;
+    report.log = id.log;
+    report.film = options.film;
+    report_code = write_report_files(report, options.json || options.quiet ? stderr : stdout);
+  }
+  if (options.json) {
+    auto json = lab::summary_json(id, result);
+    if (link) json["live"] = live_json(options.live, *link);
+    fmt::print("{}\n", json.dump());
+  }
+  return report_code;
+}
+
 int run_behavior(const RunOptions& options) {
   if (!options.film.empty() && (options.no_log || options.no_report)) {
     throw InputError(
@@ -130,35 +165,8 @@ int run_behavior(const RunOptions& options) {
   live.watch.reset();
   if (live.reloads) live.reloads->close();
   if (spec.status) std::fputs("\r\033[K", stderr);
-  if (log) {
-    log->close();
-    core::write_whole_file(options.log + "/summary.json",
-                           lab::summary_json(id, result, true).dump(2) + "\n");
-    core::write_whole_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
-  }
-  if (!options.quiet)
-    std::fputs(lab::summary_text(id, result).c_str(), options.json ? stderr : stdout);
-  if (!options.quiet && link)
-    std::fputs(live_text(options.live, *link).c_str(), options.json ? stderr : stdout);
-  if (!options.quiet && log)
-    fmt::print(options.json ? stderr : stdout, "  log          {}\n", id.log);
-  if (!options.quiet && log && result.reloads > 0) {
-    fmt::print(options.json ? stderr : stdout, "  goes on in   {}{}\n",
-               lab::reload_log(options.log, 1),
-               result.reloads > 1 ? fmt::format(" ... reload-{}", result.reloads) : "");
-  }
-  int report_code = kGood;
-  if (log && !options.no_report) {
-    ReportArguments report;
-    report.log = id.log;
-    report.film = options.film;
-    report_code = write_report_files(report, options.json || options.quiet ? stderr : stdout);
-  }
-  if (options.json) {
-    auto json = lab::summary_json(id, result);
-    if (link) json["live"] = live_json(options.live, *link);
-    fmt::print("{}\n", json.dump());
-  }
+  if (log) log->close();
+  const int report_code = show_result(options, id, result, link.get());
   const bool failed = result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault;
   return failed ? kRobotFailed : report_code;
 }

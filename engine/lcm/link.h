@@ -13,8 +13,8 @@
 #include "engine/lcm/bus.h"
 #include "engine/live/codec.h"
 #include "engine/live/key.h"
-#include "engine/live/port.h"
 #include "engine/live/server.h"
+#include "engine/realtime/live_port.h"
 
 namespace footfall::engine {
 

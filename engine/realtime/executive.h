@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/realtime/timing_histogram.h"
-#include "engine/live/port.h"
+#include "engine/realtime/live_port.h"
 #include "engine/tick/control_loop.h"
 
 namespace footfall::engine {

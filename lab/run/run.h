@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/realtime/timing_histogram.h"
-#include "engine/live/port.h"
 #include "engine/log/writer.h"
+#include "engine/realtime/live_port.h"
 #include "engine/tick/control_loop.h"
 #include "lab/run/end.h"
 #include "lab/run/metrics.h"
