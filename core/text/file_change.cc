@@ -75,7 +75,7 @@ std::string stage(Staged& staged) {
 
 std::string put_in_place(Staged& staged) {
   try {
-    // A new file must not take the place of one that came meanwhile.
+    // A new file must not replace one that was created in the meantime.
     staged.change->is_new ? staged.file->create() : staged.file->replace();
   } catch (const std::runtime_error& error) {
     return error.what();

@@ -29,9 +29,9 @@ class LivePort {
 
   // Reload. Room for what another loop will post; any thread, while that loop runs, too.
   virtual std::unique_ptr<LiveBinding> prepare(ControlLoop& loop) const = 0;
-  // The tick's thread, between two ticks: from now on post() is of the loop that `binding` was
-  // prepared for. The loop before must live, unused, until rebound(); only then comes the next. No
-  // lock, no allocation.
+  // Called by the tick's thread between two ticks: post() now belongs to the loop for which
+  // `binding` was prepared. The previous loop must exist, unused, until rebound(); only then the
+  // next rebind is allowed. No lock, no allocation.
   virtual void rebind(std::unique_ptr<LiveBinding> binding) noexcept = 0;
   virtual bool rebound() const noexcept = 0;
 };

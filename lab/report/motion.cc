@@ -134,7 +134,7 @@ class Portraits {
   // The planner's prediction for the phase's last row, and how far the robot was from it.
   void add_prediction(std::size_t end, int step) {
     const Point2 p = {at(*plans_[0].position[0], end), at(*plans_[0].position[1], end)};
-    if (p == Point2{0.0, 0.0}) return;  // nothing was planned yet
+    if (p == Point2{0.0, 0.0}) return;  // no plan yet
     const Point2 q = turned(p[0] - at(*foot_x_, end), p[1] - at(*foot_y_, end), yaw_);
     const Point2 v = turned(at(*plans_[0].velocity[0], end), at(*plans_[0].velocity[1], end), yaw_);
     const char* label = any_predicted_ ? "" : "predicted for the switch";

@@ -43,7 +43,7 @@ class TuneOutbox {
   };
   struct Ask {
     footfall_lcm::request_t request;
-    std::vector<Wanted> wanted;  // empty: the request is whole
+    std::vector<Wanted> wanted;  // empty if the request was given as a whole
     double over = 0.0;
   };
   const Wanted* find_wanted(int entry) const;
