@@ -142,7 +142,7 @@ struct ExpressionScope {
   core::Dimension entry_dimension;                                 // dimension of the task's axes
   const std::vector<core::Dimension>* entry_dimensions = nullptr;  // for each axis, if they differ
   // A statistic of one signal, or of its magnitude, over a run (expectations only): the index of
-  // the signal that holds it, -1 if there is none.
+  // the signal that holds it, -1 if unsupported.
   std::function<int(const Statistic& statistic, bool magnitude, int signal)> find_statistic;
 };
 

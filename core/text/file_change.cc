@@ -63,7 +63,7 @@ std::string check_target(const FileChange& change, const std::string& target,
   return "";
 }
 
-// Empty, or why it cannot be written.
+// Stages the new content; returns the reason for a failure, else an empty text.
 std::string stage(Staged& staged) {
   try {
     staged.file = std::make_unique<StagedFile>(staged.target, staged.change->after);

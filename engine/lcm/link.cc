@@ -243,7 +243,7 @@ std::unique_ptr<LiveBinding> LcmLink::prepare(ControlLoop& loop) const {
 }
 
 void LcmLink::rebind(std::unique_ptr<LiveBinding> binding) noexcept {
-  impl_->next.reset(static_cast<LinkBinding*>(binding.release()));  // of prepare()
+  impl_->next.reset(static_cast<LinkBinding*>(binding.release()));  // created by prepare()
   impl_->posting = impl_->next.get();
   impl_->rebinding.store(true, std::memory_order_release);
 }

@@ -56,10 +56,10 @@ struct ScriptEntry {
   std::optional<double> duration;  // s, of a fault or hold; nullopt: to the end
 };
 
-// A statistic of a signal over the time that is judged.
+// A statistic of a signal over the judged time.
 struct SignalStatistic {
   const behaviors::Statistic* statistic = nullptr;
-  bool magnitude = false;  // of |signal|
+  bool magnitude = false;  // of the magnitude |signal|
   int signal = 0;          // into ScenarioDescription::signals
   int value = 0;           // index of the signal that holds the result, likewise
 };

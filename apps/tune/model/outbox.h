@@ -36,7 +36,7 @@ class TuneOutbox {
   bool empty() const { return queue_.empty() && !sent_; }
 
  private:
-  // A new value, and the target that the person saw when they asked for it.
+  // A new value, and the target value displayed when it was requested.
   struct Wanted {
     int entry = 0;  // into TuneModel::entries
     double seen = 0.0, value = 0.0;
