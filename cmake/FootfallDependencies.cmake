@@ -18,8 +18,8 @@ find_package(CLI11 REQUIRED)                  # CLI11::CLI11
 include(FootfallZstd)                         # footfall_zstd
 include(FootfallLua)                          # footfall_lua
 include(FootfallLcm)                          # footfall_lcm, footfall_sodium
-find_program(LCM_GEN lcm-gen REQUIRED)        # makes engine/lcm/messages/*.lcm into headers
-find_package(Python3 COMPONENTS Interpreter REQUIRED)  # makes what the codec must know of them
+find_program(LCM_GEN lcm-gen REQUIRED)        # generates headers from engine/lcm/messages/*.lcm
+find_package(Python3 COMPONENTS Interpreter REQUIRED)  # runs engine/lcm/message_layouts.py
 set(CURSES_NEED_WIDE TRUE)
 find_package(Curses REQUIRED)                 # CURSES_LIBRARIES, CURSES_INCLUDE_DIRS
 

@@ -14,7 +14,7 @@
 
 namespace footfall::hal {
 
-// Measured once a tick. Arrays are in the robot file's order; unused entries are 0.
+// Measured once a tick. Arrays have the order of the robot file; unused entries are 0.
 struct Sensors {
   std::int64_t time_ns = 0;                                       // backend's clock at sampling
   std::array<double, core::kMaxJoints> q{};                       // joint position, rad
@@ -25,16 +25,16 @@ struct Sensors {
   std::array<bool, core::kMaxContacts> contact{};                 // foot switch closed
   std::array<std::array<double, 3>, core::kMaxContacts> force{};  // N, ground on robot, world
 
-  bool imu_fresh = true;    // the IMU's data are new
-  bool mocap_fresh = true;  // motion capture's are
+  bool imu_fresh = true;    // new IMU data arrived
+  bool mocap_fresh = true;  // new motion capture data arrived
 
-  bool has_truth = false;                  // a simulator tells the base's true state
+  bool has_truth = false;                  // a simulator provides the base's true state below
   std::array<double, 3> p_WB{};            // base origin, m, world
   std::array<double, 4> q_WB{1, 0, 0, 0};  // base orientation, w x y z
   std::array<double, 3> v_WB{};            // velocity of the base origin, m/s, world
   std::array<double, 3> w_WB_B{};          // angular velocity, rad/s, base frame
 
-  bool body_contact = false;   // something other than a declared contact touches (simulator)
+  bool body_contact = false;   // a body other than a declared contact touches (simulator)
   bool backend_fault = false;  // the backend raised a warning or reset itself (simulator)
 };
 

@@ -29,14 +29,14 @@ std::optional<double> read_number(const core::YamlNode& node, const behaviors::P
                    : core::read_quantity(node, info.dimension, diagnostics);
 }
 
-// NAME=VALUE as what is asked of plan_save(): a list, or one number for all values of NAME.
+// Converts NAME=VALUE for plan_save(): a list, or one number for all values of NAME.
 std::optional<behaviors::NamedValue> read_setting(const behaviors::Behavior& behavior,
                                                   const std::string& name, const std::string& text,
                                                   core::Diagnostics& diagnostics) {
   const core::YamlNode node = core::load_yaml_text(text, name, diagnostics);
   const behaviors::ParameterPart part = behavior.find_parameter_part(name);
   behaviors::NamedValue value{name, {}};
-  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() says why it is unknown
+  if (part.parameter < 0 || node.is_null()) return value;  // plan_save() reports the reason
   const auto& info = behavior.parameters[static_cast<std::size_t>(part.parameter)];
   const std::size_t size = part.component < 0 ? static_cast<std::size_t>(info.size) : 1;
   const std::vector<core::YamlNode> items =

@@ -25,19 +25,19 @@ using core::WordSpec;
 constexpr std::string_view kHead = R"(# Reference
 
 Every key, word, signal and event of Footfall's files. Printed by `footfall reference` from the tables that the loader
-itself reads, so nothing is missing and nothing is made up. [behaviors.md](behaviors.md) teaches the language;
+uses, so the two cannot differ. [behaviors.md](behaviors.md) teaches the language;
 [editor.md](editor.md) brings these tables into an editor.
 
 [Values](#values) · [Behavior files](#behavior-files) · [Task types](#task-types) · [Expressions](#expressions) ·
 [Events](#events) · [Faults](#faults) · [Signals](#signals) · [Robot files](#robot-files) · [World files](#world-files) · [Sweep files](#sweep-files)
 
-In the tables, **bold** keys are needed; *otherwise* is what holds without the key. `NAME` stands for a name of your own.
+In the tables, **bold** keys are required. `NAME` is a user-defined name.
 
 ## Values
 
-A number has its unit: `16 ms`, `100 N`, `220 1/s^2`, `440 Nm/rad`. A bare number is SI. Every key knows its dimension,
+A number has its unit: `16 ms`, `100 N`, `220 1/s^2`, `440 Nm/rad`. A bare number is SI. Every key has a dimension,
 another one is an error. An angle has no dimension: `rad` is 1. `$name` is a parameter or a template's argument. Where
-the tables say *expression*, a text that begins with `=` is computed at run time, and a lone signal name needs no `=`.
+the tables say *expression*, a text that begins with `=` is computed at run time, and a single signal name needs no `=`.
 *One an axis* is one number for all axes, a list in the order of `axes`, or a map by axis (by joint, with globs such as
 `"*knee"`). `NAME: off` removes what a base, a stack or a template has under that name.
 
@@ -90,7 +90,7 @@ void add_words(const KeyTable& table, std::string& out) {
 std::string section(const KeyTable& table) {
   std::string out = fmt::format("\n### {}\n\n{}", table.id, table.doc);
   if (table.more != nullptr) out += fmt::format(" All keys of [{0}](#{0}), and:", table.more->id);
-  out += "\n\n| key | value | otherwise | meaning |\n|---|---|---|---|\n";
+  out += "\n\n| key | value | default | meaning |\n|---|---|---|---|\n";
   for (const KeySpec& key : table.keys) {
     const char* mark = key.needed ? "**" : "";
     std::string doc(key.doc);
@@ -104,7 +104,7 @@ std::string section(const KeyTable& table) {
   }
   for (const std::string_view words : table.one_of) {
     if (!words.empty()) {
-      out += fmt::format("\nAt least one of {} is needed.\n", alternatives_text(words));
+      out += fmt::format("\nAt least one of {} is required.\n", alternatives_text(words));
     }
   }
   add_words(table, out);
@@ -151,7 +151,7 @@ std::string words_table(std::span<const WordSpec> words, std::string_view head) 
 
 std::string statistics() {
   std::string out =
-      "\nStatistics of one signal (or of `abs` of it) over a time, in the expectations of a "
+      "\nStatistics of one signal (or of its `abs`) over a time, in the expectations of a "
       "scenario:\n\n| statistic | meaning |\n|---|---|\n";
   for (const behaviors::Statistic& statistic : behaviors::kStatistics) {
     out += fmt::format("| `{}(SIGNAL)` | {} |\n", statistic.name, statistic.doc);
@@ -162,15 +162,15 @@ std::string statistics() {
 std::string expressions() {
   return "\n## Expressions\n\nChecked for dimensions and compiled at load. Names:\n" +
          words_table(behaviors::kExpressionNames, "name") +
-         "\nOperators, from the weakest to the strongest:\n" +
+         "\nOperators, from lowest to highest precedence:\n" +
          words_table(behaviors::kExpressionOperators, "operator") + "\nFunctions:\n" +
          words_table(behaviors::kExpressionFunctions, "function") + statistics();
 }
 
 std::string events() {
-  return "\n## Events\n\nNames of your own are raised by `raise`, or from outside if `events` "
+  return "\n## Events\n\nUser-defined events are raised by `raise`, or externally if `events` "
          "lists "
-         "them. Built in are:\n" +
+         "them. Built-in events:\n" +
          words_table(behaviors::kEventFamilies, "event") +
          "\n`on` takes a name, a list of names, a prefix (`fault.*`: `fault` and all below), or "
          "`\"*\"`.\n";
@@ -178,7 +178,7 @@ std::string events() {
 
 std::string faults() {
   std::string out =
-      "\n## Faults\n\nEach raises the event `fault.NAME`; the robot file's `faults` has the "
+      "\n## Faults\n\nEach raises the event `fault.NAME`; the robot file's `faults` configures the "
       "reactions.\n\n";
   for (int k = 0; k < core::kFaultCount; ++k) {
     out += fmt::format("{}`{}`", k == 0 ? "" : ", ", core::fault_name(static_cast<core::Fault>(k)));

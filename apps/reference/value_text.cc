@@ -109,8 +109,8 @@ std::string values_text(const core::KeySpec& key, bool links) {
 std::string hover_text(const core::KeySpec& key) {
   std::string text(key.doc);
   text += "\n\n" + values_text(key, false);
-  if (key.needed) text += "; needed";
-  if (!key.fallback.empty()) text += fmt::format("; otherwise {}", key.fallback);
+  if (key.needed) text += "; required";
+  if (!key.fallback.empty()) text += fmt::format("; default {}", key.fallback);
   return text;
 }
 

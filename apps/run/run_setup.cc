@@ -162,7 +162,7 @@ void remove_reloads(const std::string& folder) {
     std::error_code error;
     if (!fs::exists(path, error)) return;
     for (const char* log : {"log.mcap", "log.mcap.part"}) fs::remove(path / log, error);
-    fs::remove(path, error);  // if nobody has put anything else there
+    fs::remove(path, error);  // unless it contains other files
   }
 }
 

@@ -38,7 +38,7 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 // if not. The result must outlive the run. Throws like make_link().
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
                                              lab::RunSpec& spec);
-// What a log says of how the run was set up.
+// Setup data recorded in the log.
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);
 // Creates the folder and the log in it, whose path is added to `id`; null with --no-log.
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,

@@ -6,8 +6,8 @@
 
 namespace footfall::apps {
 
-// What a program (looked up on PATH, no shell) writes to its stdout when given `input`. Throws
-// std::runtime_error if it is missing or fails; `package` is named as where to get it.
+// The stdout of a program (found on PATH, no shell) for the stdin `input`. Throws
+// std::runtime_error if it is missing or fails; the message names `package`, which contains it.
 std::string run_program(const std::string& program, const std::string& argument,
                         std::string_view input, const std::string& package);
 

@@ -93,7 +93,7 @@ struct Behavior : Chart {
   int find_parameter(std::string_view parameter) const;
   // `goal`, or one of its components: `goal.y`.
   ParameterPart find_parameter_part(std::string_view name) const;
-  // Index of the parameter that a slot belongs to; -1: there is no such slot.
+  // Index of the parameter that a slot belongs to, -1 if absent.
   int parameter_of_slot(int slot) const;
 };
 

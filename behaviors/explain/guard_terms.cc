@@ -19,7 +19,7 @@ struct OpInfo {
   bool infix = false;
 };
 
-// Operations that are written with operands; the others are read by name.
+// Operations with written operators; the others are printed by name.
 constexpr auto kOps = std::to_array<std::pair<Op, OpInfo>>({
     {Op::negate, {1, "-"}},
     {Op::logical_not, {1, "not "}},

@@ -130,19 +130,19 @@ inline double evaluate(const ExpressionPool& pool, int expression,
 
 struct Statistic;
 
-// The names that an expression may use.
+// Names available to an expression.
 struct ExpressionScope {
   const core::SignalTable* signals = nullptr;
   const std::vector<ParameterInfo>* parameters = nullptr;
   int state = -1;  // state whose clock is `t`; -1: no `t`
   // Index of a state by its (partial) name; -1 and a reason otherwise.
   std::function<int(std::string_view name, std::string& why)> find_state;
-  const std::vector<std::string>* entry_axes = nullptr;            // names of `entry.AXIS`
-  int entry_axis = -1;                                             // what a lone `entry` is
-  core::Dimension entry_dimension;                                 // of the task's axes
-  const std::vector<core::Dimension>* entry_dimensions = nullptr;  // of each, where they differ
+  const std::vector<std::string>* entry_axes = nullptr;            // axis names for `entry.AXIS`
+  int entry_axis = -1;                                             // axis of a plain `entry`
+  core::Dimension entry_dimension;                                 // dimension of the task's axes
+  const std::vector<core::Dimension>* entry_dimensions = nullptr;  // for each axis, if they differ
   // A statistic of one signal, or of its magnitude, over a run (expectations only): the index of
-  // the signal that holds it, -1 if there is none.
+  // the signal that holds it, -1 if unsupported.
   std::function<int(const Statistic& statistic, bool magnitude, int signal)> find_statistic;
 };
 

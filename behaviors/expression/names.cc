@@ -65,7 +65,7 @@ Operand ExpressionParser::parse_call(const Token& name) {
        fmt::format("unknown function '{}'{}", name.text, core::did_you_mean(name.text, names)));
 }
 
-// `rms(task.height.error)`, `max(abs(base.rpy.pitch))`: a statistic of a lone signal or of its
+// `rms(task.height.error)`, `max(abs(base.rpy.pitch))`: a statistic of a single signal or of its
 // magnitude.
 std::optional<Operand> ExpressionParser::parse_statistic(const Token& name) {
   const Statistic* statistic = find_statistic(name.text);

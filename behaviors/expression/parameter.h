@@ -45,11 +45,11 @@ struct SlotValue {
   bool operator==(const SlotValue&) const = default;
 };
 
-// New values of a parameter or gain by its name, or of one of its components (`goal.y`), SI: where
-// the array is not known, or may be another one.
+// New values of a parameter or gain by name, or of one of its components (`goal.y`), SI: for use
+// without the array, or with a different one.
 struct NamedValue {
   std::string name;
-  std::vector<double> values;  // as many as it has
+  std::vector<double> values;  // all values of the parameter or component
 };
 
 }  // namespace footfall::behaviors

@@ -37,8 +37,8 @@ void move_top(std::vector<double>& from, bool from_low, std::vector<double>& to)
   push(to, !from_low);
 }
 
-// Nearest rank, exact: `low` holds the ceil(percent n / 100) smallest of n samples, its greatest is
-// the result. O(log n) a sample.
+// Nearest rank, exact: `low` holds the ceil(percent n / 100) smallest of n samples, its maximum is
+// the result. O(log n) per sample.
 template <int percent>
 void keep_ordered(StatisticState& s, double x) {
   const auto n = static_cast<std::size_t>(s.samples);

@@ -73,7 +73,7 @@ struct SavePlanner {
   void refuse(core::Mark mark, const std::string& name, const std::string& reason);
 };
 
-// text_edits.cc: the texts that change for one parameter, each in the file that it belongs to.
+// text_edits.cc: the edits for one parameter, each in the file that defines it.
 void place_edits(SavePlanner& planner, const Wanted& wanted);
 // The file to be changed, read on first use; nullptr and a refusal if it cannot be changed.
 SavePlanner::File* open_file(SavePlanner& planner, const std::string& path, core::Mark mark,
@@ -93,9 +93,10 @@ std::string whole_text(const SaveSource& source, const Wanted& wanted);
 std::vector<KeyPath> paths_of(const core::YamlNode& root, const core::YamlNode& node);
 bool begins_with(const KeyPath& path, const KeyPath& head);
 
-// verify.cc: loads the behavior with the changes as if they had been written. Reasons why it is
-// not the old one with the wanted values and nothing else; `allowed`: what may differ in the tree.
-// Without one, `notes` gets what check_physics() newly finds wrong with it: `run` would refuse it.
+// verify.cc: loads the behavior as if the changes were written. Returns the reasons why it differs
+// from the old one other than by the wanted values; `allowed`: paths that may differ in the tree.
+// If there are none, `notes` gets new problems found by check_physics(), with which `run` would
+// refuse to start.
 std::vector<std::string> reasons_against_result(const SaveSource& old, const std::string& path,
                                                 const std::vector<core::FileChange>& changes,
                                                 const std::vector<Wanted>& wanted,

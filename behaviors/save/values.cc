@@ -55,10 +55,10 @@ std::string reason_against(const ParameterInfo& info, const std::vector<double>&
   return "";
 }
 
-// The parameters that get other values, from what is asked for by name.
+// Collects the parameters with new values from requests by name.
 void collect_wanted(SavePlanner& planner, const std::vector<NamedValue>& values) {
   const Behavior& behavior = planner.source.behavior;
-  std::map<int, std::vector<std::optional<double>>> asked;  // by parameter, by component
+  std::map<int, std::vector<std::optional<double>>> asked;  // by parameter and component
   for (const NamedValue& value : values) {
     const ParameterPart part = behavior.find_parameter_part(value.name);
     if (part.parameter < 0) {

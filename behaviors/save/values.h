@@ -11,7 +11,7 @@
 
 namespace footfall::behaviors {
 
-// One place that changes, for people.
+// One changed place, for display.
 struct SavedPlace {
   std::string name;                // parameter or gain
   std::string file;                // file that contains its value

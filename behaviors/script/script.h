@@ -47,7 +47,7 @@ struct ScriptView {
   double time = 0.0;                     // s
 };
 
-// What a call wants; messages are texts for the log, `script: ` before an error.
+// Result of a call; messages are texts for the log, errors begin with `script: `.
 struct ScriptAnswer {
   std::vector<int> events;
   std::vector<SlotValue> edits;

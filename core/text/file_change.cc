@@ -63,7 +63,7 @@ std::string check_target(const FileChange& change, const std::string& target,
   return "";
 }
 
-// Empty, or why it cannot be written.
+// Stages the new content; returns the reason for a failure, else an empty text.
 std::string stage(Staged& staged) {
   try {
     staged.file = std::make_unique<StagedFile>(staged.target, staged.change->after);
@@ -75,7 +75,7 @@ std::string stage(Staged& staged) {
 
 std::string put_in_place(Staged& staged) {
   try {
-    // A new file must not take the place of one that came meanwhile.
+    // A new file must not replace one that was created in the meantime.
     staged.change->is_new ? staged.file->create() : staged.file->replace();
   } catch (const std::runtime_error& error) {
     return error.what();

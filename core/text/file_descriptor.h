@@ -1,4 +1,4 @@
-// A file descriptor that closes itself.
+// A file descriptor, closed by the destructor.
 #pragma once
 
 #include <unistd.h>
@@ -24,7 +24,7 @@ class FileDescriptor {
 
   int get() const { return number_; }
   bool open() const { return number_ >= 0; }
-  // False with errno if the system reports that what was written is lost.
+  // False with errno set if the system reports that written data were lost.
   bool close() {
     const int number = std::exchange(number_, -1);
     return number < 0 || ::close(number) == 0;

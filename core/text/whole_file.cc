@@ -25,7 +25,7 @@ namespace {
   throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(error)));
 }
 
-// Empty, or what failed, with errno.
+// Writes the text; returns the failed operation with errno set, nullptr on success.
 const char* fill(FileDescriptor& file, const std::string& target, std::string_view text) {
   struct stat old {};
   if (::stat(target.c_str(), &old) == 0) {
@@ -77,7 +77,7 @@ void StagedFile::create() {
   flush_folder();
 }
 
-// Without it the new name reaches the disk a little later.
+// Without this the new name reaches the disk a little later.
 void StagedFile::flush_folder() const {
   const std::string folder = std::filesystem::path(target_).parent_path().string();
   const FileDescriptor open_folder(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

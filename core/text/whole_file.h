@@ -1,4 +1,4 @@
-// Files read and written as a whole: a reader sees the old content or the new, never a part.
+// Reads and writes complete files: a reader sees either the old or the new content, never a part.
 #pragma once
 
 #include <string>
@@ -6,24 +6,23 @@
 
 namespace footfall::core {
 
-// The absolute path behind all symbolic links; its last part need not exist.
+// The absolute path with all symbolic links resolved; its last part need not exist.
 std::string real_path(const std::string& path);
 
-// The new content of a file, complete and flushed to disk beside it (`TARGET.PID.part`, in the same
+// The complete new content of a file, flushed to disk beside it (`TARGET.PID.part`, in the same
 // folder, so that the rename is atomic). The destructor removes it unless it was put in place.
-// Errors are std::runtime_error without the path: `cannot write: No space left on device`.
+// Throws std::runtime_error without the path: `cannot write: No space left on device`.
 class StagedFile {
  public:
-  // `target`: a real path. The mode of a file that exists there is kept, its owner where the
-  // system allows that.
+  // `target`: a real path. Keeps the mode of an existing file and, where permitted, its owner.
   StagedFile(std::string target, std::string_view text);
   ~StagedFile();
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
 
-  // Takes the place of the file that exists, if any.
+  // Renames it to the target, replacing an existing file.
   void replace();
-  // Refuses to take the place of another file.
+  // Renames it to the target; fails if the target exists.
   void create();
 
  private:
@@ -32,12 +31,12 @@ class StagedFile {
   std::string target_, part_;  // part_ empty: nothing to remove
 };
 
-// Replaces or creates the file; a symbolic link stays one, its target is replaced. Throws
-// std::runtime_error with the path and the reason; the old file then is intact, nothing is left
-// beside it.
+// Replaces or creates the file; a symbolic link is kept, its target is replaced. Throws
+// std::runtime_error with the path and the reason; then the old file is unchanged and no temporary
+// file remains.
 void write_whole_file(const std::string& path, std::string_view text);
 
-// The bytes of a file, of stdin for `-`. Throws std::runtime_error with the path and the reason.
+// The content of a file, of stdin for `-`. Throws std::runtime_error with the path and the reason.
 std::string read_whole_file(const std::string& path);
 
 }  // namespace footfall::core

@@ -47,7 +47,8 @@ void check_liveness(const ParameterInfo& info, EditSource source,
                                   : info.name + ": not live; give it a range and 'live: true'");
 }
 
-// The values of a batch, slot by slot; a reason against a parameter as a whole is given once.
+// Checks the values of a batch, slot by slot; a reason that concerns a whole parameter is given
+// once.
 void check_values(const Behavior& behavior, const EditBatch& batch,
                   std::vector<std::string>& reasons) {
   int last = -1;

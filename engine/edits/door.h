@@ -38,11 +38,11 @@ struct EditBatch {
   std::uint64_t id = 0;  // chosen by the sender; 0: chosen by the door
   EditSource source = EditSource::live;
   std::vector<behaviors::SlotValue> values;  // each slot at most once
-  double over = 0.0;                         // s: the values move linearly, tick by tick
-  std::vector<int> events;                // into Behavior::events, raised in the tick that applies
-  std::optional<std::uint64_t> revision;  // refused unless this many batches were applied before
-  std::string who;                        // for the log; printable, cut at kMaxWho bytes
-  std::string note;                       // likewise, kMaxNote bytes: `undo`
+  double over = 0.0;                         // s, duration of a linear ramp of the values
+  std::vector<int> events;                   // into Behavior::events, raised in the same tick
+  std::optional<std::uint64_t> revision;     // refused unless this many were applied before
+  std::string who;                           // for the log; printable, truncated to kMaxWho bytes
+  std::string note;                          // same, kMaxNote bytes: `undo`
 };
 
 // Immediate result of submit(): accepted, or all reasons against it.
@@ -64,7 +64,7 @@ struct EditAnswer {
   std::size_t value_count = 0;
 };
 
-inline constexpr std::size_t kMaxEditEvents = 16;  // of one batch
+inline constexpr std::size_t kMaxEditEvents = 16;  // limit per batch
 inline constexpr std::size_t kMaxWho = 48, kMaxNote = 160;
 
 // A short text of fixed capacity, for queues.
@@ -226,7 +226,8 @@ void add_values(const behaviors::Behavior& behavior, behaviors::ParameterPart pa
                 std::span<const double> values, std::vector<behaviors::SlotValue>& to,
                 std::vector<std::string>& reasons);
 
-// Every reason against a batch, naming parameter, value, unit and range; `revision`: in force.
+// All reasons against a batch, naming parameter, value, unit and range; `revision`: the current
+// one.
 std::vector<std::string> reasons_against(const behaviors::Behavior& behavior,
                                          const EditBatch& batch, std::uint64_t revision);
 

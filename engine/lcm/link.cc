@@ -41,7 +41,7 @@ std::int64_t random_number() {
 
 }  // namespace
 
-// What the link needs of one loop.
+// The link's data for one loop.
 struct LinkBinding final : LiveBinding {
   LinkBinding(ControlLoop& loop, double rate)
       : behavior(loop.behavior()), entrance(loop.edits().entrance(kEntrance)), feed(loop, rate) {}
@@ -199,7 +199,7 @@ struct LcmLink::Impl {
 
   const LinkSettings settings;
   std::unique_ptr<LinkBinding> binding;
-  LinkBinding* posting;  // of the tick's thread
+  LinkBinding* posting;  // used by the tick's thread
   LiveServer server;
   LcmBus bus;
   LiveServer::Answers answers;
@@ -243,7 +243,7 @@ std::unique_ptr<LiveBinding> LcmLink::prepare(ControlLoop& loop) const {
 }
 
 void LcmLink::rebind(std::unique_ptr<LiveBinding> binding) noexcept {
-  impl_->next.reset(static_cast<LinkBinding*>(binding.release()));  // of prepare()
+  impl_->next.reset(static_cast<LinkBinding*>(binding.release()));  // created by prepare()
   impl_->posting = impl_->next.get();
   impl_->rebinding.store(true, std::memory_order_release);
 }

@@ -37,8 +37,8 @@ std::string number_with_unit(double value, core::Dimension dimension) {
   return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
-// The text of the value at the head of a batch's, or of all values of a parameter if all follow
-// each other there; cuts them off.
+// Removes and describes the first value of a batch, or all values of a parameter if they are
+// consecutive.
 std::string cut_change(const Behavior& behavior, std::span<const behaviors::SlotValue>& values) {
   const int slot = values.front().slot;
   const ParameterInfo& info = behavior.parameters[at(behavior.parameter_of_slot(slot))];

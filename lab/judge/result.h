@@ -20,7 +20,7 @@ struct ExpectationOutcome {
   std::string text;     // as written, with its times
   std::string place;    // FILE:LINE:COLUMN
   bool passed = false;  // in this run; `in` says of how many runs that is asked
-  double part = 1.0;    // of the seeds in which it must hold
+  double part = 1.0;    // fraction of seeds in which it must hold
   // What the condition speaks of, at its place or over its time: "max abs base.rpy.pitch" 0.061.
   std::vector<std::pair<std::string, double>> values;
   std::string value;  // the same for people, with units

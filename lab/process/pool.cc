@@ -40,7 +40,7 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What a pipe delivers, of which only the end is kept.
+// Output of a pipe, of which only the end is kept.
 struct Stream {
   FileDescriptor fd;
   std::string* text = nullptr;

@@ -96,7 +96,7 @@ std::string step_slider(const std::vector<StepFact>& facts) {
       facts.size(), escape_html(list.dump()));
 }
 
-// Phase portraits of both axes of the heading frame, one curve for each support phase.
+// Phase portraits of both axes of the heading frame, one curve per support phase.
 class Portraits {
  public:
   explicit Portraits(const Log& log)
@@ -107,7 +107,7 @@ class Portraits {
       PlanePlot{"phase-y", "Sideways", "y - foot, m", "velocity, m/s", {}, false, 0.02}};
   std::vector<StepFact> facts;
 
-  // Adds a phase, one of `count`; nothing if the log has no position of its foot.
+  // Adds one of `count` phases; nothing if the log has no position of its foot.
   void add(const SupportPhase& phase, std::size_t count) {
     foot_x_ = log_.values("point." + phase.foot + ".x");
     foot_y_ = log_.values("point." + phase.foot + ".y");
@@ -131,10 +131,10 @@ class Portraits {
   }
 
  private:
-  // The planner's prediction for the phase's last row, and how far the robot was from it.
+  // The planner's prediction for the phase's last row, and its difference from the actual state.
   void add_prediction(std::size_t end, int step) {
     const Point2 p = {at(*plans_[0].position[0], end), at(*plans_[0].position[1], end)};
-    if (p == Point2{0.0, 0.0}) return;  // nothing was planned yet
+    if (p == Point2{0.0, 0.0}) return;  // no plan yet
     const Point2 q = turned(p[0] - at(*foot_x_, end), p[1] - at(*foot_y_, end), yaw_);
     const Point2 v = turned(at(*plans_[0].velocity[0], end), at(*plans_[0].velocity[1], end), yaw_);
     const char* label = any_predicted_ ? "" : "predicted for the switch";
@@ -146,7 +146,7 @@ class Portraits {
     facts.back().text += fmt::format("; there, from the prediction: x {:+.1f} mm, y {:+.1f} mm",
                                      1e3 * (reached[0] - q[0]), 1e3 * (reached[1] - q[1]));
   }
-  // Position of the centre of mass from the stance foot, m, heading frame.
+  // Position of the centre of mass relative to the stance foot, m, heading frame.
   Point2 from_foot(std::size_t row) const {
     return turned(at(*columns_.x, row) - at(*foot_x_, row),
                   at(*columns_.y, row) - at(*foot_y_, row), yaw_);
@@ -168,8 +168,8 @@ class Portraits {
   std::vector<std::string> feet_, named_;
   std::vector<PlannerColumns> plans_;
   bool any_predicted_ = false;
-  const std::vector<float>*foot_x_ = nullptr, *foot_y_ = nullptr;  // of the phase that is added
-  double yaw_ = 0.0;                                               // rad, at its start
+  const std::vector<float>*foot_x_ = nullptr, *foot_y_ = nullptr;  // of the current phase
+  double yaw_ = 0.0;                                               // rad, at the start of the phase
 };
 
 }  // namespace

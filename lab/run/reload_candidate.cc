@@ -69,7 +69,7 @@ RunOutputs::~RunOutputs() {
   try {
     close();
   } catch (const std::exception&) {
-    // Whoever wants to know calls close().
+    // Errors are only reported by an explicit close().
   }
 }
 
@@ -97,7 +97,7 @@ void RunOutputs::close() {
   }
   std::error_code ignored;
   fs::remove(path_ + ".part", ignored);
-  fs::remove(fs::path(path_).parent_path(), ignored);  // if nobody has put anything else there
+  fs::remove(fs::path(path_).parent_path(), ignored);  // unless it contains other files
 }
 
 std::string reload_log(const std::string& folder, int number) {

@@ -46,8 +46,8 @@ struct ScriptEntry {
   core::Mark mark;
   Moment moment;
   std::optional<ScriptedPush> push;
-  std::vector<behaviors::SlotValue> edit;  // with `raise`, as one live edit
-  double over = 0.0;                       // s, ramp of the edit
+  std::vector<behaviors::SlotValue> edit;  // applied as one live edit together with `raise`
+  double over = 0.0;                       // s, ramp duration of the edit
   std::vector<behaviors::SlotValue> set;
   int raise = -1;  // into Behavior::events
   std::optional<InjectedFault> fault;
@@ -56,12 +56,12 @@ struct ScriptEntry {
   std::optional<double> duration;  // s, of a fault or hold; nullopt: to the end
 };
 
-// A statistic of a signal over the time that is judged.
+// A statistic of a signal over the judged time.
 struct SignalStatistic {
   const behaviors::Statistic* statistic = nullptr;
-  bool magnitude = false;  // of |signal|
+  bool magnitude = false;  // of the magnitude |signal|
   int signal = 0;          // into ScenarioDescription::signals
-  int value = 0;           // the signal that holds it, likewise
+  int value = 0;           // index of the signal that holds the result, likewise
 };
 
 struct Expectation {

@@ -11,7 +11,7 @@ namespace {
 
 using core::YamlNode;
 
-// The signal that holds a statistic, made at its first use.
+// The signal that holds a statistic, added on first use.
 int statistic_signal(ScenarioDescription& scenario, const behaviors::Statistic& statistic,
                      bool magnitude, int signal) {
   const core::SignalInfo of = scenario.signals.info(signal);
@@ -25,7 +25,8 @@ int statistic_signal(ScenarioDescription& scenario, const behaviors::Statistic& 
   return value;
 }
 
-// A condition. `statistics`: those that it may use, added to; nullptr: it is of one tick.
+// Compiles a condition. `statistics`: receives the statistics that it uses; nullptr: none are
+// allowed, because it is evaluated in a single tick.
 using UsedStatistics = std::vector<const behaviors::Statistic*>;
 int compile_condition(ScenarioContext& context, const YamlNode& node, UsedStatistics* statistics) {
   if (!node.is_scalar() || node.scalar.empty()) {
@@ -135,7 +136,7 @@ void read_end(ScenarioContext& context, const YamlNode& node, Expectation& expec
   for (const YamlNode& item : node.items) take(item);
 }
 
-// A statistic that keeps its samples has no value over more than kMostKeptSamples of them.
+// Requires that a statistic that keeps its samples has at most kMostKeptSamples of them.
 void require_room(ScenarioContext& context, const YamlNode& node, const Expectation& expectation,
                   const UsedStatistics& statistics) {
   if (context.scenario.behavior == nullptr || !context.scenario.behavior->has_robot) return;

@@ -93,7 +93,7 @@ constexpr KeySpec kGoldenRows[] = {
 constexpr KeySpec kExpectationRows[] = {
     key("that", condition(),
         "a condition; statistics of a signal, such as `rms`, are of the whole time"),
-    key("never", condition(), "a condition that may hold in no tick"),
+    key("never", condition(), "a condition that must be false in every tick"),
     key("sequence", list(name_of("a state")), "states that are entered in this order"),
     key("end", choice(kScenarioEndRows), list(choice(kScenarioEndRows)),
         "how the run ends; without it by `time` or `finished`"),

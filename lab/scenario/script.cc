@@ -188,7 +188,7 @@ std::vector<double> read_values(ScenarioContext& context, const YamlNode& node,
   return values;
 }
 
-// Parameters and gains by name; a live edit changes only what is live.
+// Parameters and gains by name; a live edit may change only live parameters.
 std::vector<behaviors::SlotValue> read_changes(ScenarioContext& context, const YamlNode& node,
                                                bool edit) {
   std::vector<behaviors::SlotValue> changes;

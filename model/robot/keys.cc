@@ -4,7 +4,7 @@
 namespace footfall::model {
 namespace {
 
-using namespace core;  // the words in which tables are written
+using namespace core;  // constructors of the tables
 
 constexpr WordSpec kReactionRows[] = {
     {"continue", "the fault is counted and logged"},

@@ -25,7 +25,7 @@ using core::YamlNode;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTiny = 1e-9;  // least value of what must be above zero, in SI
 
-// One section of the file a function; each reports what is wrong in it and the rest goes on.
+// One function a section of the file; each reports its own problems and the next one goes on.
 class RobotLoader {
  public:
   RobotLoader(const std::string& path, Diagnostics& diagnostics) : diagnostics_(diagnostics) {

@@ -1,4 +1,4 @@
-// Frames to ffmpeg; see video.h.
+// Pipes frames to ffmpeg; see video.h.
 #include "sim/view/video.h"
 
 #include <csignal>

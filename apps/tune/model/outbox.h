@@ -36,14 +36,14 @@ class TuneOutbox {
   bool empty() const { return queue_.empty() && !sent_; }
 
  private:
-  // A new value, and the target that the person saw when they asked for it.
+  // A new value, and the target value displayed when it was requested.
   struct Wanted {
     int entry = 0;  // into TuneModel::entries
     double seen = 0.0, value = 0.0;
   };
   struct Ask {
     footfall_lcm::request_t request;
-    std::vector<Wanted> wanted;  // empty: the request is whole
+    std::vector<Wanted> wanted;  // empty if the request was given as a whole
     double over = 0.0;
   };
   const Wanted* find_wanted(int entry) const;

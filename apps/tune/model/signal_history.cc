@@ -1,4 +1,4 @@
-// The past of all signals, and a plot of one as text; see signal_history.h.
+// History of all signals, and a plot of one as text; see signal_history.h.
 #include "apps/tune/model/signal_history.h"
 
 #include <algorithm>

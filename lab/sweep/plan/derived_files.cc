@@ -1,4 +1,4 @@
-// Derived scenarios and worlds; see derived_files.h.
+// Writes derived scenarios and worlds; see derived_files.h.
 #include "lab/sweep/plan/derived_files.h"
 
 #include <fmt/format.h>

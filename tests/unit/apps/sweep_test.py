@@ -93,7 +93,7 @@ class Resume(Case):
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=20)
         self.assertEqual(process.returncode, 1, out + err)
-        self.assertIn("the same command goes on", out)
+        self.assertIn("repeat the command to continue", out)
         done = [seed for seed, status in self.rows("seed, status") if status == "passed"]
         self.assertGreater(len(done), 0)
         self.assertLess(len(done), 8)
