@@ -5,7 +5,7 @@
 #include "apps/tune/view/layout.h"
 #include "apps/tune/view/pages.h"
 #include "apps/tune/view/view.h"
-#include "tests/unit/apps/tune_test_support.h"
+#include "tests/unit/apps/tune/tune_test_support.h"
 
 namespace footfall::apps {
 namespace {

@@ -1,4 +1,4 @@
-"""The full screen of `footfall tune` in a pseudo terminal, beside a run: tune_screen_test.py BINARY SOURCE_DIR."""
+"""The full screen of `footfall tune` in a pseudo terminal, beside a run: tune_screen_test.py BINARY."""
 import fcntl
 import os
 import pty
@@ -7,13 +7,11 @@ import select
 import signal
 import struct
 import subprocess
-import sys
 import termios
 import time
-import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import tune_cli_test  # noqa: E402
+import tune_test
+from command import BINARY, main
 
 SEQUENCE = re.compile(rb"\x1b\[([?\d;]*)([A-Za-z])|\x1b[()][0-9A-B]|\x1b[=>78]|[\x0e\x0f\x07]|\$<\d+[*/]*>")
 
@@ -90,7 +88,7 @@ class Terminal:
         self.column = min(max(self.column, 0), self.columns - 1)
 
 
-class Screen(tune_cli_test.Live):
+class Screen(tune_test.Live):
     def open(self, rows=24, columns=80, url=None):
         self.master, slave = pty.openpty()
         self.terminal = Terminal(rows, columns)
@@ -98,7 +96,7 @@ class Screen(tune_cli_test.Live):
         self.before = termios.tcgetattr(slave)
         self.slave = slave
         self.program = subprocess.Popen(
-            [tune_cli_test.BINARY, "tune", "--url", url or self.url, "--who", "tester", "--timeout", "20s"],
+            [BINARY, "tune", "--url", url or self.url, "--who", "tester", "--timeout", "20s"],
             stdin=slave, stdout=slave, stderr=subprocess.PIPE, env=dict(self.environment, TERM="vt100"),
             start_new_session=True, cwd=self.folder,
             preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
@@ -210,7 +208,4 @@ class Screen(tune_cli_test.Live):
 
 
 if __name__ == "__main__":
-    if not tune_cli_test.multicast_works():
-        print("skipped: no multicast on this host")
-        sys.exit(tune_cli_test.SKIP)
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main(skipped=None if tune_test.multicast_works() else tune_test.NO_MULTICAST)

@@ -7,7 +7,7 @@
 
 #include "apps/tune/model/model.h"
 #include "apps/tune/view/text.h"
-#include "tests/unit/apps/tune_test_support.h"
+#include "tests/unit/apps/tune/tune_test_support.h"
 
 namespace footfall::apps {
 namespace {

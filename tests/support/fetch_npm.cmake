@@ -1,4 +1,4 @@
-# cmake -DNPM=... -DWORK=... -P fetch.cmake: the packages of a test, by `npm ci`. What cannot
+# cmake -DNPM=... -DWORK=... -P fetch_npm.cmake: the packages of a test, by `npm ci`. What cannot
 # be fetched is no failure: the tests that need it then say that they are skipped.
 if(EXISTS ${WORK}/node_modules/.package-lock.json AND
     ${WORK}/node_modules/.package-lock.json IS_NEWER_THAN ${WORK}/package-lock.json)

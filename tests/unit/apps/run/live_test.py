@@ -1,15 +1,10 @@
-"""`footfall run --lcm` from outside: live_cli_test.py BINARY. Where LCM has no network only the refusals are tried."""
+"""`footfall run --lcm` from outside: live_test.py BINARY. Where LCM has no network only the refusals are tried."""
 import json
 import os
-import pathlib
-import random
 import socket
-import subprocess
-import sys
-import tempfile
 import unittest
 
-BINARY = os.path.abspath(sys.argv.pop(1))
+import command
 
 
 def has_network():
@@ -21,17 +16,14 @@ def has_network():
     return True
 
 
-class Live(unittest.TestCase):
+class Live(command.Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.url = f"udpm://239.255.76.67:{random.SystemRandom().randint(20000, 60000)}?ttl=0"
+        super().setUp()
+        self.url = f"udpm://239.255.76.67:{command.free_port()}?ttl=0"
 
     def run_it(self, *arguments):
-        return subprocess.run([BINARY, "run", "balance", "--for", "0.1s", "--no-log", *arguments], capture_output=True,
-                              text=True, timeout=100, cwd=self.folder,
-                              env=dict(os.environ, XDG_RUNTIME_DIR=str(self.folder)))
+        return self.footfall("run", "balance", "--for", "0.1s", "--no-log", *arguments,
+                             env=dict(os.environ, XDG_RUNTIME_DIR=str(self.folder)))
 
     def refused(self, text, *arguments):
         result = self.run_it(*arguments)
@@ -78,4 +70,4 @@ class Live(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    command.main()

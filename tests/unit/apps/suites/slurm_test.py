@@ -1,4 +1,4 @@
-"""`footfall sweep --slurm` on a real Slurm of one node: slurm_test.py BINARY ROOT.
+"""`footfall sweep --slurm` on a real Slurm of one node: slurm_test.py BINARY.
 
 Starts munged, slurmctld and slurmd with files, ports and a key of their own, and ends them. Needs root. Exit code 77
 where something is missing: skipped.
@@ -6,17 +6,14 @@ where something is missing: skipped.
 import contextlib
 import ctypes
 import os
-import pathlib
 import shutil
 import socket
 import sqlite3
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 
-BINARY, ROOT = (os.path.abspath(a) for a in sys.argv[1:3])
+from command import BINARY, SOURCE, Case, main
+
 DAEMONS = ("munged", "slurmctld", "slurmd")
 PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
 
@@ -89,7 +86,7 @@ PartitionName=all Nodes={host} Default=YES State=UP
                                                    stdin=subprocess.DEVNULL))
 
     def call(self, *command, check=True):
-        done = subprocess.run(command, env=self.environment, cwd=ROOT, capture_output=True, text=True, timeout=60,
+        done = subprocess.run(command, env=self.environment, cwd=SOURCE, capture_output=True, text=True, timeout=60,
                               stdin=subprocess.DEVNULL)
         if check and done.returncode:
             raise AssertionError(f"{' '.join(command)}: {done.stdout}{done.stderr}{self.logs()}")
@@ -121,11 +118,9 @@ def wait(condition, seconds):
         time.sleep(0.2)
 
 
-class OnSlurm(unittest.TestCase):
+class OnSlurm(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.folder.chmod(0o755)  # munged refuses what others can write
         self.slurm = Slurm(self.folder)
         self.addCleanup(self.slurm.stop)
@@ -157,9 +152,5 @@ class OnSlurm(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    reason = missing()
-    if reason:
-        print("skipped: " + reason)
-        sys.exit(77)
     ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: nothing that it starts outlives it unseen
-    unittest.main(argv=[sys.argv[0]])
+    main(skipped=missing())

@@ -5,14 +5,11 @@ import pathlib
 import re
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 import xml.etree.ElementTree as ElementTree
 
-BINARY = os.path.abspath(sys.argv[1])
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent.parent
+import command
+
 FAKE = str(pathlib.Path(__file__).with_name("fake_footfall.sh").resolve())
 
 CHART = """behavior: 1
@@ -43,11 +40,9 @@ def children_of(pid):
     return found
 
 
-class Case(unittest.TestCase):
+class Case(command.Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         (self.folder / "tests/runs/regression").mkdir(parents=True)
         (self.folder / "tests/runs/regression/chart.yaml").write_text(CHART)
 
@@ -58,11 +53,11 @@ class Case(unittest.TestCase):
                         f"for: 1 s\nexpect:\n{lines}{more}")
         return str(path.relative_to(self.folder))
 
-    def command(self, *arguments):
-        return [BINARY, "test", "--program", FAKE, "-j", "2", *arguments]
+    def options(self, *arguments):
+        return ["test", "--program", FAKE, "-j", "2", *arguments]
 
     def footfall(self, *arguments):
-        result = subprocess.run(self.command(*arguments), capture_output=True, text=True, timeout=60, cwd=self.folder)
+        result = command.footfall(*self.options(*arguments), cwd=self.folder)
         path = self.folder / "out/test/session.json"
         self.session = json.loads(path.read_text()) if path.exists() else None
         return result
@@ -126,8 +121,8 @@ class Children(Case):
         (self.folder / "tests/runs/regression/chart.yaml").write_text(STAND)
         path = self.folder / self.scenario("long", "runs for hours")
         path.write_text(path.read_text().replace("for: 1 s", "for: 50000 s"))
-        environment = dict(os.environ, FOOTFALL_PATH=str(ROOT))
-        process = subprocess.Popen([BINARY, "test", "-j", "1"], cwd=self.folder, stdout=subprocess.DEVNULL, env=environment)
+        environment = dict(os.environ, FOOTFALL_PATH=str(command.SOURCE))
+        process = subprocess.Popen([command.BINARY, "test", "-j", "1"], cwd=self.folder, stdout=subprocess.DEVNULL, env=environment)
         child = None
         for _ in range(200):
             found = children_of(process.pid)
@@ -147,7 +142,7 @@ class Children(Case):
     def test_an_interrupt_ends_the_children_and_tells_what_was_done(self):
         self.scenario("a", "pass")
         self.scenario("b", "hang", "1..2")
-        process = subprocess.Popen(self.command(), cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen([command.BINARY, *self.options()], cwd=self.folder, stdout=subprocess.PIPE, text=True)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         out, _ = process.communicate(timeout=20)
@@ -297,4 +292,4 @@ class Formats(Case):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
+    command.main()

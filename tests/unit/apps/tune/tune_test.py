@@ -1,4 +1,4 @@
-"""`footfall tune` from outside, beside a run on a port of its own: tune_cli_test.py BINARY SOURCE_DIR [CLASS...]."""
+"""`footfall tune` from outside, beside a run on a port of its own: tune_test.py BINARY [CLASS...]."""
 import json
 import os
 import pathlib
@@ -13,18 +13,11 @@ import tempfile
 import time
 import unittest
 
-BINARY, SOURCE = map(os.path.abspath, sys.argv[1:3])
-sys.path.insert(0, os.path.join(SOURCE, "tests", "runs", "docs"))
-import run_docs  # noqa: E402
+import documents
+from command import BINARY, SOURCE, footfall, free_port, main
 
 GROUP = "239.255.76.67"
-SKIP = 77
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("", 0))
-        return probe.getsockname()[1]
+NO_MULTICAST = "no multicast on this host (ip link set lo up; ip route add 239.255.76.67 dev lo)"
 
 
 def multicast_works():
@@ -82,9 +75,8 @@ class Live(unittest.TestCase):
         cls.temporary.cleanup()
 
     def tune(self, *arguments, **options):
-        return subprocess.run([BINARY, "tune", "--url", self.url, "--timeout", "20s", *arguments], text=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
-                              env=self.environment, cwd=self.folder, **options)
+        return footfall("tune", "--url", self.url, "--timeout", "20s", *arguments, env=self.environment, cwd=self.folder,
+                        **options)
 
     def good(self, *arguments):
         result = self.tune(*arguments)
@@ -205,18 +197,16 @@ class Document(Live):
     def test_the_commands_of_the_document(self):
         failures, count = [], 0
         # `check` of a saved overlay: the original's warnings are not the matter here.
-        for language, line, lines in run_docs.blocks(pathlib.Path(SOURCE, "docs/tuning.md").read_text()):
+        for language, line, lines in documents.blocks(pathlib.Path(SOURCE, "docs/tuning.md").read_text()):
             if language != "console":
                 continue
             for command, expected in commands_of(lines):
                 words = shlex.split(command)
                 if words[1] == "tune":
                     words[2:2] = ["--url", self.url]
-                done = subprocess.run([BINARY, *words[1:]], cwd=self.folder, env=self.environment, text=True,
-                                      timeout=60, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                      stderr=subprocess.STDOUT)
+                done = footfall(*words[1:], cwd=self.folder, env=self.environment, stderr=subprocess.STDOUT)
                 count += 1
-                if not run_docs.matches(expected, done.stdout.splitlines()):
+                if not documents.matches(expected, done.stdout.splitlines()):
                     failures.append(f"{line}: {command}\nexpected\n" + "\n".join(expected) + "\ngot\n" + done.stdout)
         self.assertEqual(failures, [], "\n".join(failures))
         self.assertGreater(count, 15)
@@ -237,7 +227,7 @@ class Completion(Live):
     def complete(self, line):
         """What bash offers at the end of the line."""
         script = f"""
-            source {shlex.quote(SOURCE)}/tools/completion/footfall.bash
+            source {shlex.quote(str(SOURCE))}/tools/completion/footfall.bash
             compopt() {{ :; }}
             COMP_LINE={shlex.quote(line)}
             COMP_WORDS=({line}{' ""' if line.endswith(' ') else ''})
@@ -271,8 +261,4 @@ class Completion(Live):
 
 
 if __name__ == "__main__":
-    classes = sys.argv[3:]
-    if classes != ["Silence"] and not multicast_works():
-        print("skipped: no multicast on this host (ip link set lo up; ip route add 239.255.76.67 dev lo)")
-        sys.exit(SKIP)
-    unittest.main(argv=[sys.argv[0], *classes])
+    main(skipped=NO_MULTICAST if sys.argv[2:] != ["Silence"] and not multicast_works() else None)

@@ -1,12 +1,10 @@
-"""The commands that read logs, from outside: log_cli_test.py BINARY."""
-import os
+"""The commands that read logs, from outside: log_test.py BINARY [CLASS...]."""
+import json
 import pathlib
-import subprocess
-import sys
 import tempfile
 import unittest
 
-BINARY = os.path.abspath(sys.argv[1])
+import command
 
 
 class Logs(unittest.TestCase):
@@ -27,7 +25,7 @@ class Logs(unittest.TestCase):
 
     @classmethod
     def footfall(cls, *arguments):
-        return subprocess.run([BINARY, *arguments], capture_output=True, text=True, timeout=60, cwd=cls.folder)
+        return command.footfall(*arguments, cwd=cls.folder)
 
     def refused(self, result, *words):
         self.assertEqual(result.returncode, 2, result.stderr)
@@ -84,5 +82,28 @@ class Logs(unittest.TestCase):
             self.refused(self.footfall(*command, "none.mcap"), "none.mcap")
 
 
+class Events(command.Case):
+    def test_what_happened_by_kind_and_time(self):
+        self.run_it("balance", "--for", "2s", "--quiet")
+        everything = self.footfall("events", str(self.log))
+        self.assertEqual((everything.returncode, everything.stderr), (0, ""))
+        self.assertIn("-> step.right_foot.lift", everything.stdout)
+        result = self.footfall("events", str(self.log / "log.mcap"), "--kind", "step,mark", "--from", "1s", "--to",
+                               "1.8s", "--json")
+        events = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual({e["kind"] for e in events}, {"step", "mark"})
+        self.assertTrue(all(1.0 <= e["time_s"] <= 1.8 for e in events))
+
+    def test_bad_input(self):
+        self.run_it("balance", "--for", "0.1s", "--quiet")
+        for arguments, word in ((["--kind", "stpe"], "step"), (["--from", "soon"], "--from")):
+            result = self.footfall("events", str(self.log), *arguments)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(word, result.stderr)
+        result = self.footfall("events", "no.mcap")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("no.mcap", result.stderr)
+
+
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    command.main()

@@ -1,26 +1,21 @@
-"""`footfall sweep` with children that pass, fall, crash, hang and talk nonsense: sweep_test.py BINARY ROOT [CLASS...]."""
+"""`footfall sweep` with children that pass, fall, crash, hang and talk nonsense: sweep_test.py BINARY [CLASS...]."""
 import collections
 import os
 import pathlib
 import signal
 import sqlite3
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 
-BINARY = os.path.abspath(sys.argv[1])
-ROOT = os.path.abspath(sys.argv[2])
+from command import BINARY, SOURCE, Case, main
+
 FAKE = str(pathlib.Path(__file__).with_name("fake_run.sh").resolve())
 VARY = ["--vary", "lift_time=130ms..160ms:2"]
 
 
-class Case(unittest.TestCase):
+class SweepCase(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.out = self.folder / "out"
         self.environment = dict(os.environ, FAKE_LOG=str(self.folder / "starts"), FAKE_ACTS="")
 
@@ -29,7 +24,7 @@ class Case(unittest.TestCase):
         return [BINARY, "sweep", what, *program, "-j", "2", "--out", str(self.out), *arguments]
 
     def start(self, command):
-        return subprocess.Popen(command, cwd=ROOT, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        return subprocess.Popen(command, cwd=SOURCE, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                 stdin=subprocess.DEVNULL, text=True)
 
     def run_it(self, command, expect=0):
@@ -52,7 +47,7 @@ class Case(unittest.TestCase):
         return path.read_text().splitlines() if path.exists() else []
 
 
-class Children(Case):
+class Children(SweepCase):
     def test_each_end_of_a_child_is_a_recorded_result_and_no_other_run_suffers(self):
         self.environment["FAKE_ACTS"] = "crash@2 fall@3 garbage@4 input@5 machine@6 hang@7"
         self.sweep("--seeds", "1..8", "--timeout", "0.8s", expect=1)
@@ -85,7 +80,7 @@ class Children(Case):
         self.sweep("--seeds", "1..2")
 
 
-class Resume(Case):
+class Resume(SweepCase):
     def test_an_interrupted_sweep_goes_on_without_repeating_what_is_done(self):
         self.environment["FAKE_ACTS"] = " ".join(f"slow@{n}" for n in range(1, 9))
         process = self.start(self.command("--seeds", "1..8"))
@@ -130,15 +125,15 @@ class Resume(Case):
 
     def test_a_changed_behavior_is_refused(self):
         copy = self.folder / "mine.yaml"
-        text = pathlib.Path(ROOT, "behaviors/library/balance_best.yaml").read_text()
-        copy.write_text(text.replace("base: ", f"base: {ROOT}/behaviors/library/"))
+        text = pathlib.Path(SOURCE, "behaviors/library/balance_best.yaml").read_text()
+        copy.write_text(text.replace("base: ", f"base: {SOURCE}/behaviors/library/"))
         self.sweep("--seeds", "1", what=str(copy))
         copy.write_text(copy.read_text() + "\n# a remark\n")
         self.sweep("--seeds", "1", what=str(copy), expect=2)
         self.assertIn("has changed since", self.stderr)
 
 
-class Input(Case):
+class Input(SweepCase):
     def test_bad_names_and_values_are_told_before_the_first_run(self):
         for arguments, words in ((["--vary", "lift_tme=[1 s]"], "did you mean 'lift_time'"),
                                  (["--vary", "lift_time=[9 s]"], "outside the range"),
@@ -189,7 +184,7 @@ class Input(Case):
         self.assertEqual(self.starts(), [])
 
 
-class Shards(Case):
+class Shards(SweepCase):
     def test_shards_join_to_what_one_sweep_gives(self):
         for shard in (1, 2, 3):
             self.sweep(*VARY, "--seeds", "1..4", "--shard", f"{shard}/3")
@@ -231,4 +226,4 @@ class Shards(Case):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main()
