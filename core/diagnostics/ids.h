@@ -14,7 +14,7 @@ struct DiagnosticInfo {
   std::string_view meaning;  // one line
 };
 
-// All of them, in alphabetical order. Each has a wrong file in tests/language/mistakes.
+// All of them, in alphabetical order. Each has a case in tests/language/mistakes.
 std::span<const DiagnosticInfo> diagnostic_ids();
 // nullptr if there is no such id.
 const DiagnosticInfo* find_diagnostic_id(std::string_view id);
