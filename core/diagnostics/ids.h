@@ -14,7 +14,7 @@ struct DiagnosticInfo {
   std::string_view meaning;  // one line
 };
 
-// All ids in alphabetical order. Each has an example file in tests/language/mistakes.
+// All ids in alphabetical order. Each has a case in tests/language/mistakes.
 std::span<const DiagnosticInfo> diagnostic_ids();
 // nullptr if unknown.
 const DiagnosticInfo* find_diagnostic_id(std::string_view id);

@@ -5,7 +5,6 @@ exits 0 or 1. If it cannot measure, it ends with an exception or with exit code 
 """
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -111,11 +110,6 @@ def pick(figures, *path):
             give_up(f"no '{'.'.join(path)}' in the figures")
         figures = figures[key]
     return figures
-
-
-def spread(values):
-    """`median / worst` of figures where less is better, and the count."""
-    return f"median {statistics.median(values):.3g}, worst {max(values):.3g} of {len(values)}"
 
 
 def scratch():

@@ -1,17 +1,13 @@
-// Files with one mistake each (one/), and with five (five/). Each says in its first lines what is
-// to be found, and where; the places were counted by hand:
-//     # expect: LINE:COLUMN id       0:0: the file as a whole
-//     # says: part of the message, that tells what to do
-//     # set: NAME=VALUE              optional, as after `footfall check --set`
-// Nothing else may be reported: no consequence, no second pass.
+// Each mistake of the case files gets its diagnostic at its place, with a text that says what to
+// do, and nothing else is reported: no consequence, no second pass. See cases.h.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 #include "behaviors/loader.h"
@@ -19,6 +15,7 @@
 #include "lab/scenario/loader.h"
 #include "model/robot/description.h"
 #include "sim/world/description.h"
+#include "tests/language/mistakes/cases.h"
 #include "tests/language/mistakes/source_ids.h"
 
 namespace footfall::tests {
@@ -26,75 +23,63 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Expected {
-  int line = 0, column = 0;
-  std::string id, says;
-};
+const std::string kFolder = std::string(FOOTFALL_SOURCE_DIR) + "/tests/language/mistakes";
 
-struct WrongFile {
-  fs::path path;
-  std::string text;
-  std::vector<Expected> expected;
-  std::vector<std::pair<std::string, std::string>> set;
-};
-
-std::string after(const std::string& line, const std::string& key) {
-  return line.starts_with(key) ? line.substr(key.size()) : std::string();
-}
-
-WrongFile read(const fs::path& path) {
-  WrongFile file{path, {}, {}, {}};
-  std::ifstream in(path);
-  std::string line;
-  while (std::getline(in, line)) {
-    file.text += line + "\n";
-    if (const std::string place = after(line, "# expect: "); !place.empty()) {
-      Expected expected;
-      char colon = 0;
-      std::istringstream(place) >> expected.line >> colon >> expected.column >> expected.id;
-      file.expected.push_back(expected);
-    } else if (const std::string says = after(line, "# says: "); !says.empty()) {
-      file.expected.back().says = says;
-    } else if (const std::string set = after(line, "# set: "); !set.empty()) {
-      const std::size_t equal = set.find('=');
-      file.set.emplace_back(set.substr(0, equal), set.substr(equal + 1));
+// A folder for one case, in which robots/, examples/ and behaviors/ are those of the source tree.
+class CaseFolder {
+ public:
+  CaseFolder() : path_(fs::temp_directory_path() / fmt::format("footfall_mistakes_{}", getpid())) {
+    fs::create_directories(path_);
+    for (const char* name : {"robots", "examples", "behaviors"}) {
+      fs::create_directory_symlink(fs::absolute(fs::path(FOOTFALL_SOURCE_DIR) / name),
+                                   path_ / name);
     }
   }
-  return file;
+  ~CaseFolder() { fs::remove_all(path_); }
+  CaseFolder(const CaseFolder&) = delete;
+  CaseFolder& operator=(const CaseFolder&) = delete;
+  std::string write(const TextFile& file) const {
+    std::ofstream(path_ / file.name) << file.text;
+    return (path_ / file.name).string();
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::vector<MistakeCase> all_cases() {
+  const std::vector<TextFile> bases = read_bases(kFolder);
+  std::vector<MistakeCase> cases;
+  for (const auto& entry : fs::directory_iterator(kFolder)) {
+    if (entry.path().extension() != ".yaml" || entry.path().stem() == "bases") continue;
+    const std::vector<MistakeCase> more = read_cases(entry.path().string(), bases);
+    cases.insert(cases.end(), more.begin(), more.end());
+  }
+  return cases;
 }
 
-std::vector<WrongFile> wrong_files(const char* folder) {
-  std::vector<fs::path> paths;
-  const fs::path root = fs::path(FOOTFALL_SOURCE_DIR) / "tests" / "language" / "mistakes" / folder;
-  for (const auto& entry : fs::directory_iterator(root)) paths.push_back(entry.path());
-  std::sort(paths.begin(), paths.end());
-  std::vector<WrongFile> files;
-  for (const fs::path& path : paths) files.push_back(read(path));
-  return files;
-}
-
-// What loading the file reports, by place.
-std::vector<core::Diagnostic> report(const WrongFile& file) {
-  core::Diagnostics diagnostics;
-  const std::string path = file.path.string();
-  if (file.text.find("\nrobot: 1\n") != std::string::npos) {
+void load(const std::string& path, const std::string& text,
+          const std::vector<std::pair<std::string, std::string>>& set,
+          core::Diagnostics& diagnostics) {
+  if (text.starts_with("robot: 1\n")) {
     model::load_robot(path, diagnostics);
-  } else if (file.text.find("\nworld: 1\n") != std::string::npos) {
+  } else if (text.starts_with("world: 1\n")) {
     const auto world = sim::load_world(path, diagnostics);
     if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
-  } else if (file.text.find("\nscenario: 1\n") != std::string::npos) {
+  } else if (text.starts_with("scenario: 1\n")) {
     lab::load_scenario(path, {{FOOTFALL_SOURCE_DIR}}, diagnostics);
   } else {
     behaviors::LoadOptions options;
     options.search = {FOOTFALL_SOURCE_DIR};
-    options.set = file.set;
+    options.set = set;
     behaviors::load_behavior(path, options, diagnostics);
   }
-  std::vector<core::Diagnostic> found = diagnostics.all();
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.mark.line, a.mark.column) < std::tie(b.mark.line, b.mark.column);
-  });
-  return found;
+}
+
+template <typename Item, typename Place>
+void sort_by_place(std::vector<Item>& items, Place place) {
+  std::sort(items.begin(), items.end(),
+            [&](const Item& a, const Item& b) { return place(a) < place(b); });
 }
 
 std::string describe(const std::vector<core::Diagnostic>& found) {
@@ -105,25 +90,30 @@ std::string describe(const std::vector<core::Diagnostic>& found) {
   return out.empty() ? "\n    nothing" : out;
 }
 
-bool fits(const Expected& expected, const core::Diagnostic& found) {
-  return found.mark.line == expected.line && found.mark.column == expected.column &&
-         found.id == expected.id && !expected.says.empty() &&
-         found.text.find(expected.says) != std::string::npos;
+std::string describe(const std::vector<ExpectedDiagnostic>& expected) {
+  std::string out;
+  for (const ExpectedDiagnostic& item : expected) {
+    out += fmt::format("\n    {}:{} {}: ...{}...", item.line, item.column, item.id, item.part);
+  }
+  return out;
 }
 
-void expect_exactly(const WrongFile& file) {
-  const std::vector<core::Diagnostic> found = report(file);
-  std::vector<Expected> expected = file.expected;
-  std::sort(expected.begin(), expected.end(), [](const Expected& a, const Expected& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
-  });
-  std::string wanted;
-  for (const Expected& item : expected) {
-    wanted += fmt::format("\n    {}:{} {}: ...{}...", item.line, item.column, item.id, item.says);
-  }
+void expect_exactly(const MistakeCase& mistake, const CaseFolder& folder) {
+  core::Diagnostics diagnostics;
+  for (const TextFile& file : mistake.files) folder.write(file);
+  load(folder.write(mistake.files.front()), mistake.files.front().text, mistake.set, diagnostics);
+  std::vector<core::Diagnostic> found = diagnostics.all();
+  sort_by_place(found, [](const auto& item) { return std::tie(item.mark.line, item.mark.column); });
+  std::vector<ExpectedDiagnostic> expected = mistake.expected;
+  sort_by_place(expected, [](const auto& item) { return std::tie(item.line, item.column); });
+  const auto fits = [&](const ExpectedDiagnostic& wanted, const core::Diagnostic& item) {
+    return item.mark.line == wanted.line && item.mark.column == wanted.column &&
+           item.id == wanted.id && item.text.find(wanted.part) != std::string::npos &&
+           (wanted.file.empty() ||
+            fs::path(diagnostics.file(item.mark.file)).filename() == wanted.file);
+  };
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), found.begin(), found.end(), fits))
-      << file.path.filename().string() << "\n  expected" << wanted << "\n  found"
-      << describe(found);
+      << mistake.name << "\n  expected" << describe(expected) << "\n  found" << describe(found);
   for (const core::Diagnostic& item : found) {
     const core::DiagnosticInfo* info = core::find_diagnostic_id(item.id);
     ASSERT_NE(info, nullptr) << item.id;
@@ -131,21 +121,25 @@ void expect_exactly(const WrongFile& file) {
   }
 }
 
-TEST(Mistakes, EachWrongFileGetsOneDiagnosticAtItsPlaceThatSaysWhatToDo) {
-  const std::vector<WrongFile> files = wrong_files("one");
-  EXPECT_GE(files.size(), 120U);
-  for (const WrongFile& file : files) {
-    EXPECT_EQ(file.expected.size(), 1U) << file.path;
-    expect_exactly(file);
+TEST(Mistakes, EachMistakeGetsOneDiagnosticAtItsPlaceThatSaysWhatToDo) {
+  const CaseFolder folder;
+  std::size_t single = 0, several = 0;
+  for (const MistakeCase& mistake : all_cases()) {
+    const bool five = mistake.name.starts_with("five.yaml: ");
+    EXPECT_EQ(mistake.expected.size(), five ? 5U : 1U) << mistake.name;
+    ++(five ? several : single);
+    expect_exactly(mistake, folder);
   }
+  EXPECT_GE(single, 300U);
+  EXPECT_GE(several, 20U);
 }
 
-TEST(Mistakes, FiveMistakesInAFileAreReportedInOnePass) {
-  const std::vector<WrongFile> files = wrong_files("five");
-  EXPECT_GE(files.size(), 20U);
-  for (const WrongFile& file : files) {
-    EXPECT_EQ(file.expected.size(), 5U) << file.path;
-    expect_exactly(file);
+TEST(Mistakes, TheTextsThatCasesChangeHaveNone) {
+  const CaseFolder folder;
+  for (const TextFile& base : read_bases(kFolder)) {
+    core::Diagnostics diagnostics;
+    load(folder.write({base.name + ".yaml", base.text}), base.text, {}, diagnostics);
+    EXPECT_EQ(diagnostics.to_string(), "") << base.name;
   }
 }
 
@@ -156,18 +150,19 @@ TEST(Mistakes, EveryIdInTheSourcesIsRegistered) {
   }
 }
 
-TEST(Mistakes, EveryRegisteredIdIsUsedAndHasAWrongFile) {
+TEST(Mistakes, EveryRegisteredIdIsUsedAndHasACase) {
   std::set<std::string> used, shown;
   for (const auto& [id, file] : ids_in_sources(FOOTFALL_SOURCE_DIR)) used.insert(id);
-  for (const WrongFile& file : wrong_files("one")) shown.insert(file.expected.front().id);
-  core::Diagnostics nothing_there;  // the one mistake that no file can show
+  for (const MistakeCase& mistake : all_cases()) {
+    if (mistake.expected.size() == 1) shown.insert(mistake.expected.front().id);
+  }
+  core::Diagnostics nothing_there;  // the one mistake that no case can show
   behaviors::load_behavior("no/such/file.yaml", {}, nothing_there);
   for (const core::Diagnostic& item : nothing_there.all()) shown.insert(item.id);
   for (const core::DiagnosticInfo& info : core::diagnostic_ids()) {
     const std::string id(info.id);
     EXPECT_TRUE(used.contains(id)) << "nothing reports '" << id << "'";
-    EXPECT_TRUE(shown.contains(id))
-        << "no file in tests/language/mistakes/one expects '" << id << "'";
+    EXPECT_TRUE(shown.contains(id)) << "no case in tests/language/mistakes expects '" << id << "'";
   }
 }
 

@@ -8,39 +8,15 @@ usage: run_docs.py FOOTFALL_PROGRAM DOCUMENT...
 import difflib
 import os
 import pathlib
-import re
 import shlex
 import subprocess
 import sys
 import tempfile
 
+import documents
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 QUICK = {"check", "trace", "signals", "config", "set", "fmt", "graph", "new", "schema"}  # commands that run no physics
-
-
-def blocks(text):
-    """(language, first line number, lines) of each fenced block."""
-    language, first, lines = None, 0, []
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.startswith("```"):
-            if language is None:
-                language, first, lines = line[3:].strip() or "text", number, []
-            else:
-                yield language, first, lines
-                language = None
-        elif language is not None:
-            lines.append(line)
-
-
-def matches(expected, actual):
-    """Whether the lines are those expected, `...` being anything."""
-    pattern = ""
-    for line in expected:
-        if line.strip() == "...":
-            pattern += r"(?:.*\n)*?"
-        else:
-            pattern += ".*".join(re.escape(part) for part in line.rstrip().split("...")) + r"\s*\n"
-    return re.fullmatch(pattern, "".join(line.rstrip() + "\n" for line in actual)) is not None
 
 
 def run_console(program, where, lines, folder):
@@ -60,7 +36,7 @@ def run_console(program, where, lines, folder):
         done = subprocess.run([program, *words[1:]], cwd=folder, text=True, timeout=60, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         actual = done.stdout.splitlines()
-        if expected and not matches(expected, actual):
+        if expected and not documents.matches(expected, actual):
             shown = "\n".join(difflib.unified_diff(expected, actual, "document", "program", lineterm=""))
             failures.append(f"{where}: {command}\n{shown}")
     return failures, count
@@ -85,7 +61,7 @@ def main():
             os.symlink(ROOT / name, os.path.join(folder, name))
         for document in sys.argv[2:]:
             text = (ROOT / document).read_text()
-            for language, line, lines in blocks(text):
+            for language, line, lines in documents.blocks(text):
                 where = f"{document}:{line}"
                 if lines and lines[0].startswith("# file:"):
                     failures += check_file(where, lines)

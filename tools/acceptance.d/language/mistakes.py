@@ -121,9 +121,9 @@ def main():
     if options.help:
         print(__doc__)
         return
-    wrong_files = rows.BUILD / "tests" / "language" / "mistakes" / "mistakes_test"
-    if options.count >= 1000 and subprocess.run([wrong_files], stdout=subprocess.DEVNULL).returncode:
-        rows.finish("the wrong files of tests/language/mistakes are not reported as they say", False)
+    cases = rows.BUILD / "tests" / "language" / "mistakes" / "mistakes_test"
+    if options.count >= 1000 and subprocess.run([cases], stdout=subprocess.DEVNULL).returncode:
+        rows.finish("the cases of tests/language/mistakes are not reported as they say", False)
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(rows.PROCESSES) as pool:
         folder = Path(name)
         script = folder / "script.yaml"

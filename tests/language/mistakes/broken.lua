@@ -1,3 +1,0 @@
-function wave()
-  footfall.log("hello"
-end

@@ -1,2 +1,0 @@
-function hear() end
-footfall.on("fault", hear)

@@ -1,0 +1,109 @@
+"""The commands that read logs, from outside: log_test.py BINARY [CLASS...]."""
+import json
+import pathlib
+import tempfile
+import unittest
+
+import command
+
+
+class Logs(unittest.TestCase):
+    """One short run and what each command says of it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.keep = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.keep.name)
+        for name, seed in (("a", "3"), ("again", "3"), ("b", "4")):
+            done = cls.footfall("run", "balance", "--for", "0.8s", "--seed", seed, "--quiet", "--no-report",
+                                "--log", name)
+            assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.keep.cleanup()
+
+    @classmethod
+    def footfall(cls, *arguments):
+        return command.footfall(*arguments, cwd=cls.folder)
+
+    def refused(self, result, *words):
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        for word in ("error: ", *words):
+            self.assertIn(word, result.stderr)
+
+    def test_a_log_replays_bit_for_bit(self):
+        done = self.footfall("replay", "a", "--verify")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "identical: 1200 ticks\n", ""))
+        done = self.footfall("replay", "a/log.mcap")
+        self.assertTrue(done.stdout.startswith("replayed 1200 ticks, 0.800 s, to "), done.stdout)
+
+    def test_a_cut_log_says_so_and_replays_as_far_as_it_goes(self):
+        data = (self.folder / "a" / "log.mcap").read_bytes()
+        (self.folder / "cut.mcap").write_bytes(data[:len(data) * 3 // 4])
+        done = self.footfall("replay", "cut.mcap", "--verify")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("warning: the log 'cut.mcap' was cut off", done.stderr)
+        self.assertLess(int(done.stdout.split()[1]), 1200)
+
+    def test_two_equal_runs_do_not_differ(self):
+        self.assertEqual((self.folder / "a" / "log.mcap").read_bytes(),
+                         (self.folder / "again" / "log.mcap").read_bytes())
+        done = self.footfall("diff", "a", "again")
+        self.assertEqual((done.returncode, done.stdout), (0, "the same: 1200 ticks\n"))
+
+    def test_two_seeds_do(self):
+        done = self.footfall("diff", "a", "b")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("seed: '3' against '4'", done.stdout)
+
+    def test_why_names_the_last_transition(self):
+        done = self.footfall("why", "a")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("taken:\n  ", done.stdout)
+        self.refused(self.footfall("why", "a", "--at", "soon"), "--at", "soon")
+        self.refused(self.footfall("why", "a", "--at", "9 s"), "0 to 1199", "13500")
+
+    def test_export_writes_what_was_asked_for(self):
+        done = self.footfall("export", "a", "--csv", "--signals", "com.pos.*", "--from", "0.2s", "--to", "0.21s")
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "tick,time_s,com.pos.x [m],com.pos.y [m],com.pos.z [m]")
+        self.assertEqual([line.split(",")[0] for line in lines[1:]], ["300", "306", "312"])
+        self.refused(self.footfall("export", "a", "--signals", "com.poss"), "com.poss")
+        events = self.footfall("export", "a", "--csv", "--events", "-o", "events.csv")
+        self.assertEqual(events.returncode, 0, events.stderr)
+        self.assertIn(",end,time,", (self.folder / "events.csv").read_text())
+
+    def test_what_is_no_log(self):
+        (self.folder / "text.mcap").write_text("text")
+        for command in (["replay"], ["why"], ["export"], ["diff", "a"]):
+            self.refused(self.footfall(*command, "text.mcap"), "text.mcap")
+            self.refused(self.footfall(*command, "none.mcap"), "none.mcap")
+
+
+class Events(command.Case):
+    def test_what_happened_by_kind_and_time(self):
+        self.run_it("balance", "--for", "2s", "--quiet")
+        everything = self.footfall("events", str(self.log))
+        self.assertEqual((everything.returncode, everything.stderr), (0, ""))
+        self.assertIn("-> step.right_foot.lift", everything.stdout)
+        result = self.footfall("events", str(self.log / "log.mcap"), "--kind", "step,mark", "--from", "1s", "--to",
+                               "1.8s", "--json")
+        events = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual({e["kind"] for e in events}, {"step", "mark"})
+        self.assertTrue(all(1.0 <= e["time_s"] <= 1.8 for e in events))
+
+    def test_bad_input(self):
+        self.run_it("balance", "--for", "0.1s", "--quiet")
+        for arguments, word in ((["--kind", "stpe"], "step"), (["--from", "soon"], "--from")):
+            result = self.footfall("events", str(self.log), *arguments)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(word, result.stderr)
+        result = self.footfall("events", "no.mcap")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("no.mcap", result.stderr)
+
+
+if __name__ == "__main__":
+    command.main()

@@ -1,0 +1,246 @@
+"""`footfall run` from outside: run_test.py BINARY [CLASS...]."""
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import time
+
+from command import BINARY, CHART, SOURCE, STAND, Case, main
+
+KEYS = """behavior robot world backend seed end steps time_s fell error foot_placement_m
+max_torque_step_Nm peak_torque_Nm goal_error_m path_length_m internal_force faults tick_us
+allocations real_time_factor log""".split()
+
+
+class BadInput(Case):
+    def test_unknown_robot(self):
+        self.refused(self.run_it("balance", "--robot", "huma"), 2, "huma")
+
+    def test_unknown_robot_in_the_file(self):
+        path = self.write("b.yaml", STAND.replace("hume", "huma"))
+        self.refused(self.run_it(path), 2, "b.yaml:2", "huma")
+
+    def test_missing_file(self):
+        self.refused(self.run_it("no/such.yaml"), 2, "no/such.yaml")
+
+    def test_a_folder_as_file(self):
+        self.refused(self.run_it(str(self.folder)), 2)
+
+    def test_malformed_yaml(self):
+        self.refused(self.run_it(self.write("b.yaml", "behavior: 1\nrobot: [hume\n")), 2, "b.yaml:")
+
+    def test_empty_file(self):
+        self.refused(self.run_it(self.write("b.yaml", "")), 2, "b.yaml")
+
+    def test_malformed_mjcf(self):
+        robot = pathlib.Path(SOURCE, "robots/hume/robot.yaml").read_text()
+        for text in ("<mujoco><worldbody></mujoco>", "", "<mujoco><worldbody/></mujoco>"):
+            self.write("bad/hume.xml", text)
+            path = self.write("bad/robot.yaml", robot)
+            self.refused(self.run_it("balance", "--robot", path), 2)
+
+    def test_missing_mjcf(self):
+        robot = pathlib.Path(SOURCE, "robots/hume/robot.yaml").read_text()
+        path = self.write("bad/robot.yaml", robot)
+        self.refused(self.run_it("balance", "--robot", path), 2, "hume.xml")
+
+    def test_a_task_on_a_missing_point(self):
+        path = self.write("b.yaml", STAND.replace(
+            "joint_damping,", "point_position, point: right_hand,").replace("kd: 5", "kp: 5"))
+        self.refused(self.run_it(path), 2, "b.yaml:7", "right_hand")
+
+    def test_push(self):
+        for push in ("40", "40,0.1,90", "x,0.1,90,1", "40,-1,90,1", "40,0.1,90,step 0", "-4,1,0,1"):
+            with self.subTest(push):
+                self.refused(self.run_it("balance", "--push=" + push), 2, "--push")
+
+    def test_more_pushes_than_there_is_room_for(self):
+        pushes = ["--push=1,0.1,90,1"] * 33
+        self.refused(self.run_it("balance", *pushes), 2, "--push", "33")
+
+    def test_a_push_without_physics(self):
+        self.refused(self.run_it("balance", "--backend", "stub", "--push", "40,0.1,90,1"), 2, "stub")
+
+    def test_goal(self):
+        for goal in ("1", "a,b", "1,2,3", "1 s,2 s"):
+            with self.subTest(goal):
+                self.refused(self.run_it("balance", "--goal", goal), 2, "--goal")
+
+    def test_goal_velocity(self):
+        self.refused(self.run_it("balance", "--goal-velocity", "fast"), 2, "--goal-velocity")
+
+    def test_a_goal_for_a_behavior_without_one(self):
+        self.refused(self.run_it(self.write("b.yaml", STAND), "--goal", "1,0"), 2, "goal")
+
+    def test_duration(self):
+        for duration in ("soon", "-3s", "0", "20 kg", "nan"):
+            with self.subTest(duration):
+                self.refused(self.run_it("balance", "--for=" + duration), 2, "--for")
+
+    def test_unknown_backend(self):
+        self.refused(self.run_it("balance", "--backend", "gazebo"), 2, "gazebo")
+
+    def test_unknown_world(self):
+        self.refused(self.run_it("balance", "--world", "moon"), 2, "moon")
+
+    def test_malformed_world(self):
+        self.refused(self.run_it("balance", "--world", self.write("w.yaml", "world: 1\ngruond: {}\n")),
+                     2, "w.yaml:2", "gruond")
+
+    def test_set(self):
+        self.refused(self.run_it("balance", "--set", "lift_tine=150ms"), 2, "lift_tine", "lift_time")
+        self.refused(self.run_it("balance", "--set", "lift_time"), 2, "lift_time")
+        self.refused(self.run_it("balance", "--set", "lift_time=3s"), 2, "lift_time")
+
+    def test_a_behavior_without_robot(self):
+        self.refused(self.run_it(self.write("b.yaml", CHART)), 2, "robot")
+
+    def test_options(self):
+        self.refused(self.run_it("balance", "--fro", "3s"), 2, "--fro")
+        self.refused(self.run_it("balance", "--steps", "-3"), 2, "--steps")
+        self.refused(self.run_it("balance", "--log-every", "0"), 2, "--log-every", "above 0, got '0'")
+        self.refused(self.run_it("balance", "--seed", "x"), 2, "--seed")
+        self.refused(self.run_it("balance", "--seed=-1"), 2, "--seed")
+        self.refused(self.footfall("walk"), 2)
+        self.refused(self.footfall(), 2)
+
+    def test_report_of_what_is_no_log(self):
+        self.refused(self.footfall("report", "no.mcap"), 2, "no.mcap")
+        self.refused(self.footfall("report", self.write("x.mcap", "text")), 2, "x.mcap")
+
+
+class NoRights(Case):
+    def test_a_log_that_cannot_be_written(self):
+        blocked = self.write("file", "")
+        for place in ("/proc/nowhere/log", blocked, blocked + "/log"):
+            with self.subTest(place):
+                result = self.footfall("run", "balance", "--for", "0.1s", "--log", place)
+                self.refused(result, 3, place)
+        self.assertEqual(pathlib.Path(blocked).read_text(), "")
+
+
+class Run(Case):
+    def test_json_is_the_last_line_and_has_every_key(self):
+        result = self.run_it("balance", "--for", "3s", "--seed", "5", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        summary = json.loads(result.stdout.splitlines()[-1])
+        for key in KEYS:
+            self.assertIn(key, summary)
+        self.assertEqual((summary["behavior"], summary["robot"], summary["world"]),
+                         ("balance", "hume", "flat"))
+        self.assertEqual((summary["backend"], summary["seed"], summary["end"]), ("mujoco", 5, "time"))
+        self.assertAlmostEqual(summary["time_s"], 3.0, delta=1e-3)
+        self.assertFalse(summary["fell"])
+        self.assertTrue(os.path.isfile(self.folder / summary["log"]))
+        for name in ("roll", "pitch", "yaw", "height"):
+            self.assertLessEqual(summary["error"][name]["rms"], summary["error"][name]["max"])
+
+    def test_every_key_of_the_summary_is_in_the_guide(self):
+        result = self.run_it("balance", "--for", "0.1s", "--json", "--quiet")
+        guide = pathlib.Path(SOURCE, "docs/behaviors.md").read_text()
+        for key in json.loads(result.stdout):
+            self.assertRegex(guide, rf"\n\| (`\w+`, )*`{key}`")
+
+    def test_it_says_where_it_went_and_why_it_fell(self):
+        result = self.run_it("balance", "--for", "5s", "--push", "800,0.2,40,0.3", "--json")
+        summary = json.loads(result.stdout.splitlines()[-1])
+        start, end = summary["start_m"], summary["end_m"]
+        self.assertAlmostEqual(summary["moved_m"], math.dist(start, end), places=9)
+        self.assertGreaterEqual(summary["path_length_m"], summary["moved_m"] - 1e-9)
+        cause = summary["cause"]
+        self.assertIn(cause["criterion"], ("height", "tilt", "body_contact"))
+        self.assertEqual(cause["time_s"], summary["time_s"])
+        for text in ("FELL", cause["text"], "moved"):
+            self.assertIn(text, result.stderr)
+
+    def test_what_the_behavior_says_is_printed(self):
+        path = self.write("b.yaml", STAND.replace("stand:\n", "stand:\n      on_entry: [{log: \"stands at {time} s\"}]\n"))
+        result = self.run_it(path, "--for", "0.1s")
+        self.assertRegex(result.stdout, r"0\.00\d s +stands at ")
+        self.assertNotIn("stands at", self.run_it(path, "--for", "0.1s", "--quiet").stdout)
+
+    def test_a_goal_that_is_not_live_cannot_be_moved(self):
+        goal = os.path.join(SOURCE, "examples/forward.yaml")
+        self.refused(self.run_it(goal, "--goal", "1,0"), 2, "goal", "not live", "--set")
+        self.refused(self.run_it("balance", "--goal", "1001,0"), 2, "1001", "-1000 to 1000")
+
+    def test_quiet_json_is_one_line_and_no_log_writes_nothing(self):
+        before = set(self.folder.iterdir())
+        result = self.footfall("run", "balance", "--for", "0.2s", "--json", "--quiet", "--no-log")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(result.stdout.splitlines()), 1)
+        self.assertIsNone(json.loads(result.stdout)["log"])
+        self.assertEqual(result.stderr, "")
+        self.assertEqual(set(self.folder.iterdir()), before)
+
+    def test_the_same_seed_writes_the_same_bytes(self):
+        contents = []
+        for name in ("a", "b"):
+            folder = self.folder / name
+            self.footfall("run", "balance", "--for", "1s", "--log", str(folder), "--quiet",
+                          "--no-report")
+            contents.append([(folder / f).read_bytes() for f in ("log.mcap", "summary.json")])
+        self.assertEqual(contents[0][0], contents[1][0])
+        same = contents[0][1].replace(b"/a/", b"/b/")
+        self.assertEqual(same, contents[1][1])
+
+    def test_a_fall_is_exit_code_1(self):
+        result = self.run_it("balance", "--for", "5s", "--push", "800,0.2,40,0.3", "--json", "--quiet")
+        summary = json.loads(result.stdout)
+        self.assertEqual((result.returncode, summary["end"], summary["fell"]), (1, "fall", True))
+
+    def test_the_stub_backend_runs(self):
+        result = self.run_it(self.write("b.yaml", STAND), "--backend", "stub", "--for", "1s", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        summary = json.loads(result.stdout.splitlines()[-1])
+        self.assertEqual((summary["backend"], summary["end"], summary["steps"]), ("stub", "time", 0))
+        self.assertIsNone(summary["goal_error_m"])
+        self.assertIsNone(summary["foot_placement_m"])
+        summary = json.loads(self.run_it("balance", "--backend", "stub", "--for", "0.3s", "--json", "--quiet").stdout)
+        self.assertEqual((summary["backend"], summary["fell"]), ("stub", False))
+        self.assertGreaterEqual(summary["time_s"], 0.299)
+
+
+class Interrupted(Case):
+    def begin(self):
+        """A run of a day, some of which is in the log already."""
+        process = subprocess.Popen([BINARY, "run", "balance", "--for", "86400s", "--json",
+                                    "--no-report", "--log", str(self.log)],
+                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(process.stdout.close)
+        file = self.log / "log.mcap"
+        end = time.monotonic() + 60
+        while not (file.exists() and file.stat().st_size > 200_000):
+            self.assertIsNone(process.poll(), "it ended by itself")
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        return process
+
+    def report(self):
+        result = self.footfall("report", str(self.log), "--no-strip", "-o", str(self.folder / "r.html"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertGreater((self.folder / "r.html").stat().st_size, 10_000)
+        return result
+
+    def test_ctrl_c_is_a_safe_stop_and_the_log_is_whole(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = self.begin()
+            process.send_signal(number)
+            out, _ = process.communicate(timeout=30)
+            self.assertEqual(process.returncode, 0)
+            self.assertEqual(json.loads(out.splitlines()[-1])["end"], "stopped")
+            self.assertTrue((self.log / "summary.json").exists())
+            self.assertNotIn("cut off", self.report().stderr)
+            (self.log / "log.mcap").unlink()
+
+    def test_a_killed_run_leaves_a_log_that_can_be_read(self):
+        process = self.begin()
+        process.kill()
+        process.wait(timeout=30)
+        self.assertIn("cut off", self.report().stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,229 @@
+"""`footfall sweep` with children that pass, fall, crash, hang and talk nonsense: sweep_test.py BINARY [CLASS...]."""
+import collections
+import os
+import pathlib
+import signal
+import sqlite3
+import subprocess
+import time
+
+from command import BINARY, SOURCE, Case, main
+
+FAKE = str(pathlib.Path(__file__).with_name("fake_run.sh").resolve())
+VARY = ["--vary", "lift_time=130ms..160ms:2"]
+
+
+class SweepCase(Case):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out"
+        self.environment = dict(os.environ, FAKE_LOG=str(self.folder / "starts"), FAKE_ACTS="")
+
+    def command(self, *arguments, what="balance_best"):
+        program = [] if "--program" in arguments else ["--program", FAKE]
+        return [BINARY, "sweep", what, *program, "-j", "2", "--out", str(self.out), *arguments]
+
+    def start(self, command):
+        return subprocess.Popen(command, cwd=SOURCE, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                stdin=subprocess.DEVNULL, text=True)
+
+    def run_it(self, command, expect=0):
+        process = self.start(command)
+        self.stdout, self.stderr = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, expect, self.stdout + self.stderr)
+
+    def sweep(self, *arguments, expect=0, **more):
+        self.run_it(self.command(*arguments, **more), expect)
+
+    def rows(self, columns, path=None):
+        database = sqlite3.connect(path or self.out / "sweep.sqlite")
+        try:
+            return database.execute(f"SELECT {columns} FROM runs WHERE id IS NOT NULL ORDER BY id").fetchall()
+        finally:
+            database.close()
+
+    def starts(self):
+        path = self.folder / "starts"
+        return path.read_text().splitlines() if path.exists() else []
+
+
+class Children(SweepCase):
+    def test_each_end_of_a_child_is_a_recorded_result_and_no_other_run_suffers(self):
+        self.environment["FAKE_ACTS"] = "crash@2 fall@3 garbage@4 input@5 machine@6 hang@7"
+        self.sweep("--seeds", "1..8", "--timeout", "0.8s", expect=1)
+        self.assertEqual([s for (s,) in self.rows("status")], ["passed", "crashed", "failed", "bad_output", "bad_input",
+                                                               "machine", "timed_out", "passed"])
+        tails = dict(self.rows("seed, error_tail"))
+        self.assertIn("about to crash", tails[2])
+        self.assertIn("it is wrong", tails[5])
+        self.assertIn("8/8 runs, 1 failed, 5 broken", self.stdout)
+
+    def test_a_child_gets_its_parameters_and_what_it_says_becomes_figures(self):
+        self.sweep(*VARY, "--seeds", "1..2", "--for", "5s", "--world", "slippery")
+        command = self.rows("command")[3][0]
+        for words in ("--seed 2", "'lift_time=160 ms'", "--for 5s", "sim/worlds/slippery.yaml"):
+            self.assertIn(words, command)
+        self.assertIn("--no-log", self.starts()[0])
+        database = sqlite3.connect(self.out / "sweep.sqlite")
+        row = database.execute('SELECT lift_time, steps, "error.pitch.max" FROM results WHERE id = 3').fetchone()
+        database.close()
+        self.assertEqual(row, ("160 ms", 2.0, 0.02))
+        self.assertIn("lift_time", (self.out / "report.html").read_text())
+
+    def test_a_program_that_cannot_be_started_ends_the_sweep_and_leaves_its_runs_to_do(self):
+        self.sweep("--seeds", "1..4", "--program", str(self.folder / "gone"), expect=3)
+        self.assertIn("could not be started", self.stderr)
+        self.assertEqual({s for (s,) in self.rows("status")}, {"pending"})
+
+    def test_falls_alone_are_no_failure_of_the_sweep(self):
+        self.environment["FAKE_ACTS"] = "fall@1"
+        self.sweep("--seeds", "1..2")
+
+
+class Resume(SweepCase):
+    def test_an_interrupted_sweep_goes_on_without_repeating_what_is_done(self):
+        self.environment["FAKE_ACTS"] = " ".join(f"slow@{n}" for n in range(1, 9))
+        process = self.start(self.command("--seeds", "1..8"))
+        time.sleep(0.7)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 1, out + err)
+        self.assertIn("repeat the command to continue", out)
+        done = [seed for seed, status in self.rows("seed, status") if status == "passed"]
+        self.assertGreater(len(done), 0)
+        self.assertLess(len(done), 8)
+        begun = len(self.starts())
+        self.sweep("--seeds", "1..8")
+        self.assertEqual({s for (s,) in self.rows("status")}, {"passed"})
+        self.assertEqual(len(self.starts()) - begun, 8 - len(done))
+
+    def test_kill_9_loses_the_runs_in_flight_at_most(self):
+        self.environment["FAKE_ACTS"] = " ".join(f"slow@{n}" for n in range(1, 9))
+        process = self.start(self.command("--seeds", "1..8"))
+        time.sleep(0.7)
+        process.kill()
+        process.communicate()
+        done = {seed for seed, status in self.rows("seed, status") if status == "passed"}
+        self.sweep("--seeds", "1..8")
+        self.assertEqual({s for (s,) in self.rows("status")}, {"passed"})
+        times = collections.Counter(line.split("--seed ")[1].split()[0] for line in self.starts())
+        self.assertEqual([n for n in done if times[str(n)] != 1], [])
+        self.assertLessEqual(sum(times.values()), 8 + 2)
+
+    def test_a_finished_sweep_starts_nothing(self):
+        self.sweep("--seeds", "1..2")
+        self.sweep("--seeds", "1..2")
+        self.assertEqual(len(self.starts()), 2)
+        self.assertIn("0/0 runs (2 done before)", self.stdout)
+
+    def test_another_plan_is_refused_and_extend_keeps_what_it_shares(self):
+        self.sweep("--seeds", "1..2")
+        self.sweep("--seeds", "1..3", expect=2)
+        self.assertIn("--extend", self.stderr)
+        self.sweep("--seeds", "1..3", "--extend")
+        self.assertEqual(len(self.starts()), 3)
+
+    def test_a_changed_behavior_is_refused(self):
+        copy = self.folder / "mine.yaml"
+        text = pathlib.Path(SOURCE, "behaviors/library/balance_best.yaml").read_text()
+        copy.write_text(text.replace("base: ", f"base: {SOURCE}/behaviors/library/"))
+        self.sweep("--seeds", "1", what=str(copy))
+        copy.write_text(copy.read_text() + "\n# a remark\n")
+        self.sweep("--seeds", "1", what=str(copy), expect=2)
+        self.assertIn("has changed since", self.stderr)
+
+
+class Input(SweepCase):
+    def test_bad_names_and_values_are_told_before_the_first_run(self):
+        for arguments, words in ((["--vary", "lift_tme=[1 s]"], "did you mean 'lift_time'"),
+                                 (["--vary", "lift_time=[9 s]"], "outside the range"),
+                                 (["--vary", "lift_time=1ms..150ms:5"], "outside the range"),
+                                 (["--vary", "lift_time=[5 N]"], "expected a time"),
+                                 (["--vary", "script.1.push.force=[5 N]"], "needs a scenario"),
+                                 (["--world", "nowhere"], "unknown world"),
+                                 (["--vary", "world.ground.friction=[-1]"], "world.ground.friction"),
+                                 (["--faults", "none,mocap.gone"], "mocap.dropout"),
+                                 (["--faults", "mocap.dropout@90s", "--for", "5s"], "behind the end"),
+                                 (["--count", "5"], "give --sample"),
+                                 (["--shard", "3/2"], "--shard")):
+            self.sweep(*arguments, expect=2)
+            self.assertIn(words, self.stderr, arguments)
+        self.assertEqual(self.starts(), [])
+
+    def test_a_file_says_where_it_is_wrong(self):
+        path = self.folder / "s.yaml"
+        path.write_text("sweep: 1\nbehavior: balance_best\nvary:\n  lift_time: [150 ms, 9 s]\n")
+        for command in ([BINARY, "check", str(path)], self.command(what=str(path))):
+            self.run_it(command, expect=2)
+            self.assertIn(f"{path}:4:23: error:", self.stderr)
+
+    def test_a_scenario_takes_the_parameters_that_a_sweep_gives_it(self):
+        path = self.folder / "s.yaml"
+        path.write_text("scenario: 1\nbehavior: balance_best\nfor: 0.1 s\n"
+                        "script: [{at: 0.05 s, push: {force: 20 N, for: 10 ms}}]\n")
+        run = [BINARY, "run", str(path), "--no-log", "--quiet", "--set"]
+        self.run_it([*run, "lift_time=150 ms"])
+        self.run_it([*run, "lift_tme=150 ms"], expect=2)
+        self.assertIn("did you mean 'lift_time'", self.stderr)
+        self.sweep("--vary", "script.1.push.force=[10 N, 30 N]", what=str(path))
+        forces = [pathlib.Path(line.split()[1]).read_text() for line in self.starts()]
+        self.assertTrue(any("force: 30 N" in text for text in forces), forces)
+        self.sweep("--vary", "script.2.push.force=[10 N]", what=str(path), expect=2)
+        self.assertIn("N from 1 to 1", self.stderr)
+
+    def test_save_writes_a_file_with_the_same_plan(self):
+        path = self.folder / "s.yaml"
+        self.sweep(*VARY, "--seeds", "1..2", "--save", str(path))
+        self.sweep(*VARY, "--seeds", "1..2")
+        self.sweep(what=str(path))
+        self.assertIn("0/0 runs (4 done before)", self.stdout)
+
+    def test_list_prints_every_command(self):
+        self.sweep(*VARY, "--seeds", "1..3", "--list")
+        self.assertEqual(len(self.stdout.splitlines()), 6)
+        self.assertEqual(self.starts(), [])
+
+
+class Shards(SweepCase):
+    def test_shards_join_to_what_one_sweep_gives(self):
+        for shard in (1, 2, 3):
+            self.sweep(*VARY, "--seeds", "1..4", "--shard", f"{shard}/3")
+        self.assertEqual(len(self.starts()), 8)
+        self.run_it([BINARY, "sweep", "--merge", str(self.out)])
+        self.assertIn("8 of 8 runs", self.stdout)
+        self.assertEqual({s for (s,) in self.rows("status")}, {"passed"})
+        self.run_it([BINARY, "sweep", "--csv", str(self.out)])
+        self.assertEqual(len((self.out / "sweep.csv").read_text().splitlines()), 9)
+
+    def test_a_missing_shard_is_told_and_the_same_command_can_fill_it(self):
+        self.sweep("--seeds", "1..4", "--shard", "1/2")
+        self.run_it([BINARY, "sweep", "--merge", str(self.out)], expect=1)
+        self.assertIn("2 of 4 runs", self.stdout)
+
+    def test_the_slurm_script_submits_an_array_and_a_merge_after_it(self):
+        tools = self.folder / "bin"
+        tools.mkdir()
+        # Runs each task at once, as Slurm would some time.
+        (tools / "sbatch").write_text('#!/bin/bash\nscript=$(cat)\necho "$@" >>"$SBATCH_LOG"\n'
+                                      'last=$(grep -oP -- "--array=1-\\K\\d+" <<<"$script" || echo 1)\n'
+                                      'for k in $(seq "$last"); do SLURM_ARRAY_TASK_ID=$k SLURM_CPUS_PER_TASK=1 '
+                                      'bash -c "$script" >>"$SBATCH_LOG.out" 2>&1; done\necho 17\n')
+        (tools / "sbatch").chmod(0o755)
+        self.environment.update(PATH=f"{tools}:{os.environ['PATH']}", SBATCH_LOG=str(self.folder / "sbatch"))
+        command = self.command(*VARY, "--seeds", "1..3", "--slurm", "2", "-j", "1")
+        command.remove("-j"), command.remove("2")
+        self.run_it(command)
+        script = (self.out / "slurm.sh")
+        script.write_text(script.read_text().replace(" --no-report", f" --no-report --program {FAKE}")
+                          .replace(FAKE + " sweep", BINARY + " sweep"))
+        self.run_it(["bash", str(script), "--partition=x"])
+        self.assertIn("merge:  job 17", self.stdout)
+        calls = (self.folder / "sbatch").read_text()
+        self.assertIn("--dependency=afterany:17", calls)
+        self.assertEqual(calls.count("--partition=x"), 2)
+        self.assertEqual({s for (s,) in self.rows("status")}, {"passed"}, (self.folder / "sbatch.out").read_text())
+        self.assertEqual(len(self.starts()), 6)
+
+
+if __name__ == "__main__":
+    main()
