@@ -91,7 +91,7 @@ struct LoadContext {
   int built_in_events = 0;  // events before this index are raised by the engine or from outside
   std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and what to say of them
   std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source
-  std::vector<std::string_view> task_type_of_name;                   // by Behavior::task_names
+  std::vector<tasks::TaskType> task_type_of_name;                    // by Behavior::task_names
   int expanded_states = 0;
   mutable int state_guesses = 0;  // names of states that were looked for in vain
   bool states_missing = false;    // after an error in a template: a name unknown may be one of them
