@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "behaviors/compiled/signals.h"
 #include "model/robot/keys.h"
 #include "tasks/task_types.h"
 
