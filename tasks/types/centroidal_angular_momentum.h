@@ -6,7 +6,7 @@
 namespace footfall::tasks {
 
 namespace centroidal_angular_momentum {
-inline constexpr std::array<AxisInfo, 3> kAxes = {
+inline constexpr std::array<AxisInfo, 3> kMomentumAxes = {
     {{"x", core::kAngularMomentum}, {"y", core::kAngularMomentum}, {"z", core::kAngularMomentum}}};
 
 void rows(const RowsRequest& request, const Rows& rows) noexcept;
@@ -17,7 +17,7 @@ inline constexpr TaskTypeInfo kCentroidalAngularMomentum = {
     .name = "centroidal_angular_momentum",
     .doc = "angular momentum h about the centre of mass: h' = h'_ref + kd e + kp ∫e, no ki",
     .subject = Subject::momentum,
-    .axes = centroidal_angular_momentum::kAxes,
+    .axes = centroidal_angular_momentum::kMomentumAxes,
     .frames = kVectorFrames,
     .is_rate = true,
     .gains = "kp kd",

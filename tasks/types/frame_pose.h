@@ -7,12 +7,12 @@
 namespace footfall::tasks {
 
 namespace frame_pose {
-inline constexpr std::array<AxisInfo, 6> kAxes = {{{"x", core::kLength},
-                                                   {"y", core::kLength},
-                                                   {"z", core::kLength},
-                                                   {"roll", core::kNone},
-                                                   {"pitch", core::kNone},
-                                                   {"yaw", core::kNone}}};
+inline constexpr std::array<AxisInfo, 6> kPoseAxes = {{{"x", core::kLength},
+                                                       {"y", core::kLength},
+                                                       {"z", core::kLength},
+                                                       {"roll", core::kNone},
+                                                       {"pitch", core::kNone},
+                                                       {"yaw", core::kNone}}};
 
 void rows(const RowsRequest& request, const Rows& rows) noexcept;
 double measured(const model::ControlModel& model, int point, int axis) noexcept;
@@ -23,7 +23,7 @@ inline constexpr TaskTypeInfo kFramePose = {
     .name = "frame_pose",
     .doc = "place and orientation of a named point's frame",
     .subject = Subject::point,
-    .axes = frame_pose::kAxes,
+    .axes = frame_pose::kPoseAxes,
     .frames = kPositionFrames,
     .rows = frame_pose::rows,
     .measured = frame_pose::measured,
