@@ -28,10 +28,35 @@ void TaskMemory::take_over(const TaskMemory& old, const std::vector<int>& instan
   }
 }
 
+double measured_position(const model::ControlModel& model, TaskType type, int point,
+                         int axis) noexcept {
+  return info(type).measured(model, point, axis);
+}
+
+double measured_velocity(const model::ControlModel& model, TaskType type, int point,
+                         int axis) noexcept {
+  const MeasuredFunction velocity = info(type).velocity;
+  return velocity == nullptr ? 0.0 : velocity(model, point, axis);
+}
+
+void task_rows(const TaskCommand& task, const AxisCommand* axes, const LawContext& context,
+               double* J, double* J_bias, AxisEvaluation* out) noexcept {
+  const Rows rows = {J, J_bias, out, context.model->nv()};
+  std::fill_n(J, task.axis_count * rows.n, 0.0);
+  std::fill_n(J_bias, task.axis_count, 0.0);
+  std::fill_n(out, task.axis_count, AxisEvaluation{});
+  info(task.type).rows({*context.model,
+                        task.point,
+                        task.frame,
+                        {axes, extent(task.axis_count)},
+                        {context.contacts, extent(context.contact_count)}},
+                       rows);
+}
+
 void evaluate_task(const TaskCommand& task, const AxisCommand* axes, const LawContext& context,
                    double* J, double* J_bias, AxisEvaluation* out) noexcept {
   task_rows(task, axes, context, J, J_bias, out);
-  const bool momentum = task.type == TaskType::centroidal_angular_momentum;
+  const bool is_rate = info(task.type).is_rate;
   for (int i = 0; i < task.axis_count; ++i) {
     const AxisCommand& a = axes[i];
     double& integral = context.memory->integral(task.instance, a.axis);
@@ -42,9 +67,9 @@ void evaluate_task(const TaskCommand& task, const AxisCommand* axes, const LawCo
         integral = std::clamp(integral, -a.integral_limit, a.integral_limit);
       }
     }
-    double u = momentum ? a.ref_vel + a.kd * out[i].error + a.kp * integral
-                        : a.ref_acc + a.kp * out[i].error + a.kd * (a.ref_vel - out[i].velocity) +
-                              a.ki * integral;
+    double u = is_rate ? a.ref_vel + a.kd * out[i].error + a.kp * integral
+                       : a.ref_acc + a.kp * out[i].error + a.kd * (a.ref_vel - out[i].velocity) +
+                             a.ki * integral;
     if (a.acceleration_limit > 0.0) {
       u = std::clamp(u, -a.acceleration_limit, a.acceleration_limit);
     }

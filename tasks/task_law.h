@@ -25,14 +25,6 @@
 
 namespace footfall::tasks {
 
-// One axis of one task after evaluation. Units: m or rad, and their derivatives.
-struct AxisEvaluation {
-  double measured = 0.0;
-  double velocity = 0.0;
-  double error = 0.0;      // reference minus measured (log map for orientations)
-  double commanded = 0.0;  // u; with a slope that of p - slope x
-};
-
 // Integrals of all tasks, kept across states; sized at load.
 class TaskMemory {
  public:
@@ -62,8 +54,8 @@ struct LawContext {
   int contact_count = 0;
 };
 
-// Position of one axis as measured now, world frame (orientation: roll, pitch, yaw; angular
-// momentum: about the CoM), and its velocity where it is that of a position (else 0).
+// One axis as measured now, world frame (orientation: roll, pitch, yaw; angular momentum: about the
+// CoM), and its velocity where it is that of a position (else 0).
 double measured_position(const model::ControlModel& model, TaskType type, int point,
                          int axis) noexcept;
 double measured_velocity(const model::ControlModel& model, TaskType type, int point,

@@ -11,9 +11,9 @@
 #include "apps/shared/commands.h"
 #include "behaviors/expression/statistics.h"
 #include "behaviors/language/language.h"
-#include "behaviors/load/control/task_types.h"
 #include "core/fault.h"
 #include "core/units/unit_list.h"
+#include "tasks/task_types.h"
 
 namespace footfall::apps {
 namespace {
@@ -122,21 +122,22 @@ std::string task_types() {
       "\n## Task types\n\nEach axis asks for the acceleration u = x''_ref + kp e + ki ∫e + kd e'. "
       "Gains have the same units for all: `kp` 1/s^2, `ki` 1/s^3, `kd` 1/s.\n\n"
       "| type | axes | reference in | controls |\n|---|---|---|---|\n";
-  for (const WordSpec& word : behaviors::kTaskTypes) {
-    const behaviors::TaskTypeInfo* type = behaviors::find_task_type(word.word);
-    const KeySpec& reference = *core::find_key(behaviors::kTaskKeys, "reference");
-    const bool has_reference = core::belongs_to(reference, word.word);
-    std::string axes = fmt::format("{}", fmt::join(type->axes, " "));
-    if (type->joints) axes = "the robot's joints (`joints`)";
+  for (const tasks::TaskTypeRow& row : tasks::kTaskTypes) {
+    const tasks::TaskTypeInfo& type = row.info;
+    std::string axes;
+    for (const tasks::AxisInfo& axis : type.axes) {
+      axes += fmt::format("{}{}", axes.empty() ? "" : " ", axis.name);
+    }
+    if (type.of_joints()) axes = "the robot's joints (`joints`)";
     std::vector<std::string> units;
-    const int axis_count = type->joints ? 1 : static_cast<int>(type->axes.size());
-    for (int axis = 0; has_reference && axis < axis_count; ++axis) {
-      const core::Dimension dimension = type->position(axis);
+    for (int axis = 0; type.has_reference && axis < type.axis_count(1); ++axis) {
+      const core::Dimension dimension = type.dimension(axis);
       const std::string unit = dimension == core::kNone ? "rad" : core::unit_text(dimension);
       if (units.empty() || units.back() != unit) units.push_back(unit);
     }
-    const std::string unit = has_reference ? fmt::format("{}", fmt::join(units, " and ")) : "none";
-    out += fmt::format("| `{}` | {} | {} | {} |\n", word.word, axes, unit, word.doc);
+    const std::string unit =
+        type.has_reference ? fmt::format("{}", fmt::join(units, " and ")) : "none";
+    out += fmt::format("| `{}` | {} | {} | {} |\n", type.name, axes, unit, type.doc);
   }
   return out;
 }

@@ -79,7 +79,7 @@ TaskSignals add_task(const TaskName& task, core::SignalTable& table) {
   const Dimension norm = lengths                   ? core::kLength
                          : task.dimensions.empty() ? core::kNone
                                                    : task.dimensions.front();
-  const Dimension per = task.momentum ? core::kTime : core::kTime * core::kTime;
+  const Dimension per = task.is_rate ? core::kTime : core::kTime * core::kTime;
   TaskSignals signals;
   signals.axis_count = static_cast<int>(task.axes.size());
   signals.error = table.add(name + ".error", norm, "norm of the error over its axes");

@@ -47,7 +47,7 @@ struct TaskName {
   std::string name;
   std::vector<std::string> axes;
   std::vector<core::Dimension> dimensions;  // of the axes
-  bool momentum = false;                    // a rate: its first derivative is commanded
+  bool is_rate = false;  // what is measured is a rate: what is commanded is its first derivative
 };
 
 // Layout of the table. All `xyz` members are the index of x; y and z follow.

@@ -44,8 +44,7 @@ extern const core::KeyTable kInternalKeys;
 extern const core::KeyTable kTrajectoryKeys;  // selector: trajectory
 extern const core::KeyTable kWaypointKeys;
 extern const std::span<const core::WordSpec> kDirections;
-extern const std::span<const core::WordSpec> kTaskTypes;
-extern const std::span<const core::WordSpec> kFrames;
+extern const std::span<const core::WordSpec> kFrames;  // by tasks::Frame, from `world` on
 extern const std::span<const core::WordSpec> kConventions;
 extern const std::span<const core::WordSpec> kTrajectories;
 

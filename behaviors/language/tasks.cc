@@ -1,27 +1,49 @@
 // Tasks, internal forces and trajectories; see language.h.
+#include <array>
+
 #include "behaviors/language/language.h"
+#include "tasks/task_types.h"
 
 namespace footfall::behaviors {
 namespace {
 
 using namespace core;  // constructors of the tables
 
-// Each row has its TaskTypeInfo (behaviors/load/control/signals.cc); a test compares them.
-constexpr WordSpec kTaskTypeRows[] = {
-    {"com_position", "the centre of mass"},
-    {"body_orientation",
-     "the floating base's orientation, about the axes of the heading frame; an omitted axis is "
-     "free"},
-    {"point_position", "a named point or contact"},
-    {"joint_posture", "joint angles"},
-    {"joint_damping", "brings joints to rest: kd only, no reference"},
-    {"frame_orientation",
-     "the orientation of a named point's frame; roll, pitch and yaw as in body_orientation"},
-    {"frame_pose", "position and orientation of a named point's frame"},
-    {"centroidal_angular_momentum",
-     "angular momentum h about the centre of mass: h' = h'_ref + kd e + kp ∫e, no ki"},
+// The catalogue of task types as words of the language.
+constexpr auto kTaskTypeRows = [] {
+  std::array<WordSpec, tasks::kTaskTypes.size()> words{};
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    words[k] = {tasks::kTaskTypes[k].info.name, tasks::kTaskTypes[k].info.doc};
+  }
+  return words;
+}();
+
+// Names of task types with blanks between, for KeySpec::only.
+class TypeNames {
+ public:
+  // The types that `has` holds for.
+  consteval explicit TypeNames(bool (*has)(const tasks::TaskTypeInfo&)) {
+    for (const tasks::TaskTypeRow& row : tasks::kTaskTypes) {
+      if (!has(row.info)) continue;
+      if (size_ > 0) text_[size_++] = ' ';
+      for (const char c : row.info.name) text_[size_++] = c;
+    }
+  }
+  constexpr operator std::string_view() const { return {text_.data(), size_}; }
+
+ private:
+  std::array<char, 1024> text_{};  // too small is an error of the compiler
+  std::size_t size_ = 0;
 };
 
+using TypeInfo = tasks::TaskTypeInfo;
+constexpr TypeNames kWithAxes([](const TypeInfo& type) { return !type.of_joints(); });
+constexpr TypeNames kWithJoints([](const TypeInfo& type) { return type.of_joints(); });
+constexpr TypeNames kWithPoint([](const TypeInfo& type) { return type.of_point(); });
+constexpr TypeNames kWithFrame([](const TypeInfo& type) { return !type.frames.empty(); });
+constexpr TypeNames kWithReference([](const TypeInfo& type) { return type.has_reference; });
+
+// In the order of tasks::Frame after `usual`.
 constexpr WordSpec kFrameRows[] = {
     {"world", "fixed"},
     {"stance", "positions: relative to the mean of the active contact points, world directions"},
@@ -38,17 +60,15 @@ constexpr KeySpec kTaskRows[] = {
     key("axes", list(name_of("an axis")),
         "controlled axes, in the order of `reference` and gains; omitted ones are free")
         .otherwise("all")
-        .only("com_position body_orientation point_position frame_orientation frame_pose "
-              "centroidal_angular_momentum"),
+        .only(kWithAxes),
     key("joints", list(name_of("a joint")), "controlled joints, by name or glob (\"*_hip\")")
         .otherwise("all")
-        .only("joint_posture joint_damping"),
+        .only(kWithJoints),
     key("point", name_of("a contact or point"), "controlled point of the robot; required")
-        .only("point_position frame_orientation frame_pose"),
+        .only(kWithPoint),
     key("frame", choice(kFrameRows), "frame of its axes")
         .otherwise("world; orientations heading")
-        .only("com_position body_orientation point_position frame_orientation frame_pose "
-              "centroidal_angular_momentum"),
+        .only(kWithFrame),
     key("priority", integer(1, 1000),
         "its level: a larger number acts only in the null space of smaller ones")
         .otherwise("1"),
@@ -57,8 +77,7 @@ constexpr KeySpec kTaskRows[] = {
     key("reference", kReferenceValue, map_of(kTrajectoryKeys),
         "desired value: one value an axis (number, expression, signal, `planner.NAME.target`), "
         "or a trajectory")
-        .only("com_position body_orientation point_position joint_posture frame_orientation "
-              "frame_pose centroidal_angular_momentum"),
+        .only(kWithReference),
     key("gains", name_of("a gain table"), map_of(kGainsKeys),
         "its gains, or another table with them")
         .otherwise("the state's or stack's table"),
@@ -174,7 +193,6 @@ constinit const core::KeyTable kTrajectoryKeys = {
     .part = true,
     .selector = "trajectory",
     .variants = kTrajectoryRows};
-constinit const std::span<const core::WordSpec> kTaskTypes = kTaskTypeRows;
 constinit const std::span<const core::WordSpec> kFrames = kFrameRows;
 constinit const std::span<const core::WordSpec> kConventions = kConventionRows;
 constinit const std::span<const core::WordSpec> kDirections = kDirectionRows;

@@ -91,7 +91,7 @@ struct LoadContext {
   int built_in_events = 0;  // events below this index are raised by the engine or from outside
   std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and the warning
   std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source
-  std::vector<std::string_view> task_type_of_name;                   // by Behavior::task_names
+  std::vector<tasks::TaskType> task_type_of_name;                    // by Behavior::task_names
   int expanded_states = 0;
   mutable int state_guesses = 0;  // unknown state names for which a similar name was searched
   bool states_missing = false;    // after an error in a template: a name may belong to it

@@ -34,8 +34,7 @@ double ControlMerge::measured(const Measure& measure, const TaskSpec& spec,
     }
     return world - origin;
   }
-  if (spec.type == tasks::TaskType::centroidal_angular_momentum && axis < 2 &&
-      spec.frame == tasks::Frame::heading) {
+  if (tasks::info(spec.type).is_rate && axis < 2 && spec.frame == tasks::Frame::heading) {
     const double yaw = measure.position(tasks::TaskType::body_orientation, -1, 2);
     const double x = measure.position(spec.type, -1, 0), y = measure.position(spec.type, -1, 1);
     return axis == 0 ? std::cos(yaw) * x + std::sin(yaw) * y

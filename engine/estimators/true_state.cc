@@ -1,11 +1,11 @@
-// The true state, behind the estimator's interface; see true_state.h.
+// Copies the true state from the sensors; see true_state.h.
 #include "engine/estimators/true_state.h"
 
 #include <algorithm>
 
 namespace footfall::engine {
 
-bool TrueStateEstimator::estimate(const hal::Sensors& sensors, model::State& state) noexcept {
+bool TrueState::estimate(const hal::Sensors& sensors, model::State& state) noexcept {
   if (!sensors.has_truth) return false;
   state.p_WB = sensors.p_WB;
   state.q_WB = sensors.q_WB;

@@ -1,24 +1,14 @@
-// From sensors to the state that the control model is updated with.
+// The simulator's own state: what an ideal estimator would give.
 #pragma once
 
-#include <cstdint>
-
-#include "hal/hardware.h"
-#include "model/state.h"
+#include "engine/estimators/estimator.h"
+#include "model/robot/description.h"
 
 namespace footfall::engine {
 
-class Estimator {
+class TrueState final : public Estimator {
  public:
-  virtual ~Estimator() = default;
-  // False: the sensors cannot give a state (no truth, stale data); `state` is then unchanged.
-  virtual bool estimate(const hal::Sensors& sensors, model::State& state) noexcept = 0;
-};
-
-// The simulator's own state: what an ideal estimator would give.
-class TrueStateEstimator final : public Estimator {
- public:
-  explicit TrueStateEstimator(int joints) : joints_(joints) {}
+  explicit TrueState(const model::RobotDescription& robot) : joints_(robot.joint_count()) {}
   bool estimate(const hal::Sensors& sensors, model::State& state) noexcept override;
 
  private:

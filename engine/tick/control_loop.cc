@@ -20,29 +20,10 @@ std::vector<double> torque_limits(const model::RobotDescription& robot) {
 std::vector<std::vector<int>> axis_columns(const behaviors::Behavior& behavior) {
   std::vector<std::vector<int>> columns(behavior.task_names.size());
   for (const behaviors::TaskInstance& task : behavior.task_instances) {
-    std::vector<std::string> names;
-    switch (task.type) {
-      case tasks::TaskType::com_position:
-      case tasks::TaskType::point_position:
-      case tasks::TaskType::centroidal_angular_momentum:
-        names = {"x", "y", "z"};
-        break;
-      case tasks::TaskType::body_orientation:
-      case tasks::TaskType::frame_orientation:
-        names = {"roll", "pitch", "yaw"};
-        break;
-      case tasks::TaskType::frame_pose:
-        names = {"x", "y", "z", "roll", "pitch", "yaw"};
-        break;
-      case tasks::TaskType::joint_posture:
-      case tasks::TaskType::joint_damping:
-        for (const auto& joint : behavior.robot.joints) names.push_back(joint.name);
-        break;
-    }
     const auto index = static_cast<std::size_t>(task.signals);
     const std::vector<std::string>& used = behavior.task_names[index].axes;
     columns[index].clear();
-    for (const std::string& name : names) {
+    for (const std::string& name : tasks::axis_names(task.type, behavior.robot)) {
       const auto found = std::find(used.begin(), used.end(), name);
       columns[index].push_back(found == used.end() ? -1 : static_cast<int>(found - used.begin()));
     }
@@ -92,7 +73,7 @@ tasks::ControllerSizes controller_sizes(const behaviors::Behavior& behavior) {
   sizes.contacts = std::max<int>(1, static_cast<int>(behavior.robot.contacts.size()));
   sizes.task_rows = 0;
   for (const behaviors::TaskInstance& task : behavior.task_instances) {
-    sizes.task_rows += tasks::axis_capacity(task.type, behavior.robot.joint_count());
+    sizes.task_rows += tasks::info(task.type).axis_count(behavior.robot.joint_count());
   }
   sizes.task_rows = std::clamp(sizes.task_rows, 1, core::kMaxAxes);
   sizes.levels = std::max(1, sizes.task_instances);
@@ -109,7 +90,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       machine_(std::make_unique<behaviors::Machine>(behavior, signals_)),
       edits_(behavior),
       controller_(model_, torque_limits(behavior.robot), controller_sizes(behavior), period_),
-      estimator_(behavior.robot.joint_count()),
+      estimator_(make_estimator(settings.estimator, behavior.robot)),
       planners_(behavior, model_, latency_ticks(settings.planner_latency, period_)),
       scripts_(make_scripts(behavior, settings)),
       lockstep_(settings.lockstep),
@@ -129,7 +110,7 @@ void ControlLoop::start() {
   tick_ = 0;
   state_ = LoopState::running;
   sense();
-  estimator_.estimate(sensors_, estimate_);
+  estimator_->estimate(sensors_, estimate_);
   model_.update(estimate_);
   planners_.start();
   write_measured_signals();
@@ -171,7 +152,7 @@ void ControlLoop::play(InputTrace& trace) {
 
 void ControlLoop::compute() noexcept {
   edits_.apply(tick_, *machine_);
-  estimator_.estimate(sensors_, estimate_);
+  estimator_->estimate(sensors_, estimate_);
   model_.update(estimate_);
   write_measured_signals();
   handle(safety_.check_state(sensors_, model_));

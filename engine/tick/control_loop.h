@@ -12,7 +12,7 @@
 #include "core/fault.h"
 #include "core/signal_table.h"
 #include "engine/edits/door.h"
-#include "engine/estimators/true_state.h"
+#include "engine/estimators/catalogue.h"
 #include "engine/tick/input_trace.h"
 #include "engine/tick/planner_link.h"
 #include "engine/tick/safety.h"
@@ -25,9 +25,10 @@
 namespace footfall::engine {
 
 struct LoopSettings {
-  model::ModelDeviation deviation;  // of the control model from the robot file
-  double planner_latency = 2e-3;    // s, lock-step
-  bool lockstep = true;             // the caller's clock waits for what other threads compute
+  std::string_view estimator = kDefaultEstimator;  // by name, of the catalogue
+  model::ModelDeviation deviation;                 // of the control model from the robot file
+  double planner_latency = 2e-3;                   // s, lock-step
+  bool lockstep = true;  // the caller's clock waits for what other threads compute
   behaviors::ScriptAccess script_access;
   bool run_scripts = true;       // false: a replay, which has their answers
   std::uint64_t seed = 0;        // of the scripts' random numbers
@@ -158,7 +159,7 @@ class ControlLoop {
   std::unique_ptr<behaviors::Machine> machine_;
   EditDoor edits_;
   tasks::WholeBodyController controller_;
-  TrueStateEstimator estimator_;
+  std::unique_ptr<Estimator> estimator_;
   PlannerLink planners_;
   std::unique_ptr<ScriptLink> scripts_;
   bool lockstep_;

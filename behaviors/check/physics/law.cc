@@ -62,8 +62,7 @@ std::vector<TaskRow> PhysicsLaw::rows(const ControlSpec& control) const {
   std::vector<TaskRow> rows;
   for (int k = control.tasks.first; k < control.tasks.end(); ++k) {
     const TaskSpec& task = behavior_.tasks[at(k)];
-    const bool of_joint =
-        task.type == tasks::TaskType::joint_posture || task.type == tasks::TaskType::joint_damping;
+    const bool of_joint = tasks::info(task.type).of_joints();
     for (int a = task.axes.first; a < task.axes.end(); ++a) {
       rows.push_back({&task, &behavior_.axes[at(a)], of_joint});
     }

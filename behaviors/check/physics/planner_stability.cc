@@ -96,7 +96,8 @@ class PlannerCheck {
     const double measured =
         context_.model.com().position[2] - context_.model.point_position(invoke.stance)[2];
     for (const TaskSpec& task : tasks_while(invoke.state)) {
-      if (task.type != tasks::TaskType::com_position) continue;
+      const tasks::TaskTypeInfo& type = tasks::info(task.type);
+      if (type.subject != tasks::Subject::com || !type.is_length(2)) continue;
       for (int a = task.axes.first; a < task.axes.end(); ++a) {
         const AxisSpec& axis = b().axes[at(a)];
         const Dependence needs = dependence_of(b(), axis.value);

@@ -9,13 +9,12 @@
 #include <cmath>
 
 #include "behaviors/check/physics/parts.h"
-#include "behaviors/load/control/task_types.h"
 
 namespace footfall::behaviors {
 namespace {
 
 using core::Severity;
-using tasks::TaskType;
+using tasks::Subject;
 
 const std::string& task_name(const Behavior& behavior, const TaskRow& row) {
   return behavior.task_instances[static_cast<std::size_t>(row.task->instance)].name;
@@ -68,7 +67,9 @@ class RankCheck {
     if (control_.contacts.empty() || has_vertical_moment(context_, control_.contacts)) return;
     std::erase_if(rows, [&](const TaskRow& row) {
       constexpr int kYawAxis = 2;
-      if (row.task->type != TaskType::body_orientation || row.axis->axis != kYawAxis) return false;
+      if (tasks::info(row.task->type).subject != Subject::base_rotation ||
+          row.axis->axis != kYawAxis)
+        return false;
       report_impossible(row, "a point foot gives no moment about the vertical");
       return true;
     });
@@ -89,8 +90,10 @@ class RankCheck {
   }
 
   void explain_alone(const TaskRow& row) {
-    if (row.of_joint) return;  // joints that contacts hold in place are damped already
-    if (row.task->type == TaskType::point_position && holds(control_.contacts, row.task->point)) {
+    if (row.of_joint) return;  // a joint that contacts hold still is damped already
+    const tasks::TaskTypeInfo& type = tasks::info(row.task->type);
+    if (type.of_point() && type.is_length(row.axis->axis) &&
+        holds(control_.contacts, row.task->point)) {
       const Behavior& b = context_.behavior;
       context_.findings.add(
           Severity::error, row.axis->mark, "no-authority", axis_name(b, row),
@@ -187,9 +190,8 @@ std::string contacts_text(const Behavior& behavior, const std::vector<int>& cont
 }
 
 std::string axis_name(const Behavior& behavior, const TaskRow& row) {
-  const auto axis = static_cast<std::size_t>(row.axis->axis);
-  if (row.of_joint) return behavior.robot.joints[axis].name;
-  return task_type_info(row.task->type).axes[axis];
+  return tasks::axis_names(row.task->type,
+                           behavior.robot)[static_cast<std::size_t>(row.axis->axis)];
 }
 
 void check_ranks(PhysicsContext& context, const ControlSpec& control, core::Mark state) {

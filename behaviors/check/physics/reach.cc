@@ -18,7 +18,7 @@ namespace footfall::behaviors {
 namespace {
 
 using core::Severity;
-using tasks::TaskType;
+using tasks::Subject;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 // The maximum is found numerically: coordinate ascent from several postures ends within a fraction
@@ -45,12 +45,13 @@ class ReachCheck {
  private:
   void judge(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
     if (axis.value < 0) return;
-    if (task.type == TaskType::joint_posture) {
+    const tasks::TaskTypeInfo& type = tasks::info(task.type);
+    if (type.of_joints()) {
       judge_joint(task, axis);
-    } else if (task.type == TaskType::body_orientation && axis.axis < 2) {
+    } else if (type.subject == Subject::base_rotation && type.is_angle(axis.axis) &&
+               axis.axis < 2) {
       judge_tilt(task, axis);
-    } else if ((task.type == TaskType::com_position || task.type == TaskType::point_position) &&
-               axis.axis == 2) {
+    } else if (type.is_length(axis.axis) && axis.axis == 2) {
       judge_height(control, task, axis);
     }
   }
@@ -104,7 +105,7 @@ class ReachCheck {
 
   void judge_height(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
     if (control.contacts.empty()) return;
-    const int point = task.type == TaskType::com_position ? -1 : task.point;
+    const int point = task.point;  // -1: the CoM
     double highest = farthest(control.contacts.front(), point);
     for (const int contact : control.contacts) {
       highest = std::min(highest, farthest(contact, point));

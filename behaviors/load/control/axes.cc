@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "core/yaml/glob.h"
 
 namespace footfall::behaviors {
@@ -73,6 +75,30 @@ bool compile_signals(LoadContext& context, const core::YamlNode& node, const Axe
 }
 
 }  // namespace
+
+std::optional<tasks::TaskType> require_task_type(const core::YamlNode& node,
+                                                 core::Diagnostics& diagnostics) {
+  if (!core::expect_scalar(node, "a type of task", diagnostics)) return std::nullopt;
+  if (const auto type = tasks::find_task_type(node.scalar)) return type;
+  std::vector<std::string> names;
+  for (const tasks::TaskTypeRow& row : tasks::kTaskTypes) names.emplace_back(row.info.name);
+  diagnostics.error(node.mark, "unknown-task-type",
+                    fmt::format("unknown task type '{}'{}", node.scalar,
+                                core::did_you_mean_or_list(node.scalar, names)));
+  return std::nullopt;
+}
+
+std::vector<int> read_axes(const LoadContext& context, tasks::TaskType type,
+                           const core::YamlNode* axes, core::Diagnostics& diagnostics) {
+  const std::vector<std::string> names = tasks::axis_names(type, context.behavior.robot);
+  if (axes == nullptr) {
+    std::vector<int> all(names.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  const char* what = tasks::info(type).of_joints() ? "joint" : "axis";
+  return core::expand_names(*axes, names, what, diagnostics);
+}
 
 std::vector<core::Dimension> scaled(const std::vector<core::Dimension>& positions,
                                     core::Dimension factor) {

@@ -16,7 +16,7 @@ void set_values(const core::YamlNode& node, const std::vector<int>& values,
 
 void compile_reference(LoadContext& context, const DraftItem& item, AxesScope axes, TaskSpec& spec,
                        std::vector<AxisSpec>& out) {
-  if (spec.type == tasks::TaskType::joint_damping) return;
+  if (!tasks::info(spec.type).has_reference) return;
   const DraftKey* key = item.find("reference");
   if (key == nullptr) {
     context.error(item.mark, "missing-key",

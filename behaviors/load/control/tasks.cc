@@ -12,6 +12,7 @@ namespace footfall::behaviors {
 namespace {
 
 using tasks::TaskType;
+using tasks::TaskTypeInfo;
 
 // Index into the model's points: contacts first, then the robot's points.
 int find_point(LoadContext& context, const core::YamlNode& node) {
@@ -127,43 +128,38 @@ void compile_gains(LoadContext& context, const DraftItem& item, const Draft& dra
     });
     if (source == sources.rend()) continue;
     const core::Mark mark = source->entry->node->find(kGainNames[k])->mark;
-    if (type.type == TaskType::joint_damping && k < 2) {
+    if (type.gains.find(kGainNames[k]) == std::string_view::npos) {
       context.error(mark, "misplaced-key",
-                    fmt::format("joint_damping has kd only, no {}", kGainNames[k]));
-    } else if (type.type == TaskType::centroidal_angular_momentum && k == 1) {
-      context.error(mark, "misplaced-key",
-                    "an angular momentum has kd (on its error) and kp (on that error's integral), "
-                    "no ki");
+                    fmt::format("{}, no {}", type.gains_note, kGainNames[k]));
     }
     use_gain(context, *source, k, axes, out);
   }
 }
 
-void compile_frame(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type,
+void compile_frame(LoadContext& context, const DraftItem& item, const tasks::TaskTypeInfo& type,
                    const std::vector<int>& axes, TaskSpec& spec) {
   if (type.frames.empty()) return;
-  const auto frame_of = [](std::string_view name) {
-    return name == "world"    ? tasks::Frame::world
-           : name == "stance" ? tasks::Frame::stance
-                              : tasks::Frame::heading;
-  };
-  spec.frame = frame_of(type.frames.front());
+  spec.frame = type.frames.front();
   const DraftKey* key = item.find("frame");
   if (key == nullptr) return;
-  if (std::find(type.frames.begin(), type.frames.end(), key->node->scalar) == type.frames.end()) {
-    if (core::read_choice(*key->node, kFrames, context.diagnostics, "a frame")) {
-      context.error(key->node->mark, "misplaced-name",
-                    fmt::format("a {} has the frame {}, got {}", type.name,
-                                fmt::join(type.frames, " or "), core::describe(*key->node)));
-    }
+  const auto choice = core::read_choice(*key->node, kFrames, context.diagnostics, "a frame");
+  if (!choice) return;
+  const auto frame = static_cast<tasks::Frame>(1 + *choice);
+  if (std::find(type.frames.begin(), type.frames.end(), frame) == type.frames.end()) {
+    std::vector<std::string_view> names;
+    for (const tasks::Frame f : type.frames)
+      names.push_back(kFrames[static_cast<std::size_t>(f) - 1].word);
+    context.error(key->node->mark, "misplaced-name",
+                  fmt::format("a {} has the frame {}, got {}", type.name, fmt::join(names, " or "),
+                              core::describe(*key->node)));
     return;
   }
-  spec.frame = frame_of(key->node->scalar);
-  const bool turns = type.axes.front() == "roll";
+  spec.frame = frame;
+  const bool turns = type.is_angle(0);
   const auto has = [&](int axis) {
     return std::find(axes.begin(), axes.end(), axis) != axes.end();
   };
-  if (turns && spec.frame == tasks::Frame::world && has(0) != has(1)) {
+  if (turns && frame == tasks::Frame::world && has(0) != has(1)) {
     context.error(key->node->mark, "misplaced-name",
                   "about the world's axes roll and pitch go together: one alone means nothing at "
                   "another yaw (take `frame: heading`)");
@@ -192,13 +188,14 @@ void compile_limits(LoadContext& context, const DraftItem& item, const char* nam
 void warn_idle_limit(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type,
                      const std::vector<AxisSpec>& specs) {
   const DraftKey* limit = item.find("integral_limit");
-  const bool momentum = type.type == TaskType::centroidal_angular_momentum;
   const bool integrates = std::any_of(specs.begin(), specs.end(), [&](const AxisSpec& axis) {
-    return momentum ? axis.kp >= 0 || axis.computed[0] >= 0 : axis.ki >= 0 || axis.computed[1] >= 0;
+    return type.is_rate ? axis.kp >= 0 || axis.computed[0] >= 0
+                        : axis.ki >= 0 || axis.computed[1] >= 0;
   });
   if (limit == nullptr || integrates) return;
-  context.warning(limit->node->mark, "no-effect",
-                  fmt::format("`integral_limit` without {} has no effect", momentum ? "kp" : "ki"));
+  context.warning(
+      limit->node->mark, "no-effect",
+      fmt::format("`integral_limit` without {} has no effect", type.is_rate ? "kp" : "ki"));
 }
 
 void check_task_keys(LoadContext& context, const DraftItem& item, const TaskTypeInfo& type) {
@@ -211,6 +208,40 @@ void check_task_keys(LoadContext& context, const DraftItem& item, const TaskType
     map.entries.push_back({key.key, key.mark, false, {}});
   }
   core::check_keys(map, known, context.diagnostics);
+}
+
+// The type of a task, from its own keys or those of the stack; nullopt after an error.
+std::optional<tasks::TaskType> read_type(LoadContext& context, const DraftItem& item,
+                                         const Draft& draft) {
+  const DraftKey* type_key = item.find("type");
+  if (type_key == nullptr) {
+    std::vector<std::string> names;
+    for (const DraftItem& other : draft.tasks) {
+      if (other.name != item.name) names.push_back(other.name);
+    }
+    context.error(item.mark, "unknown-task",
+                  fmt::format("task '{}' is not in the stack in force, and has no type{}",
+                              item.name, core::did_you_mean_or_list(item.name, names)));
+    return std::nullopt;
+  }
+  return require_task_type(*type_key->node, context.diagnostics);
+}
+
+// The axes that a task controls; empty after an error, or if there is nothing to control.
+std::vector<int> controlled_axes(LoadContext& context, const DraftItem& item, tasks::TaskType type,
+                                 const DraftKey* axes_key) {
+  const int before = context.diagnostics.error_count();
+  const std::vector<int> axes =
+      read_axes(context, type, axes_key == nullptr ? nullptr : axes_key->node, context.diagnostics);
+  if (context.diagnostics.error_count() != before) return {};
+  if (axes.empty() && axes_key != nullptr && axes_key->node->is_sequence() &&
+      axes_key->node->items.empty()) {
+    context.error(axes_key->node->mark, "empty-value",
+                  fmt::format("`{}: []` leaves nothing to control: name some, or remove the task "
+                              "with `{}: off`",
+                              axes_key->key, item.name));
+  }
+  return axes;
 }
 
 }  // namespace
@@ -231,24 +262,14 @@ int compile_limit(LoadContext& context, const DraftItem& item, const char* name,
 
 std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item,
                                      const Draft& draft) {
-  const DraftKey* type_key = item.find("type");
-  if (type_key == nullptr) {
-    std::vector<std::string> names;
-    for (const DraftItem& other : draft.tasks) {
-      if (other.name != item.name) names.push_back(other.name);
-    }
-    context.error(item.mark, "unknown-task",
-                  fmt::format("task '{}' is not in the stack in force, and has no type{}",
-                              item.name, core::did_you_mean_or_list(item.name, names)));
-    return std::nullopt;
-  }
-  const TaskTypeInfo* type = require_task_type(*type_key->node, context.diagnostics);
-  if (type == nullptr) return std::nullopt;
-  check_task_keys(context, item, *type);
+  const auto type = read_type(context, item, draft);
+  if (!type) return std::nullopt;
+  const TaskTypeInfo& info = tasks::info(*type);
+  check_task_keys(context, item, info);
   TaskSpec spec;
-  spec.type = type->type;
+  spec.type = *type;
   spec.mark = item.mark;
-  if (type->pointed) {
+  if (info.of_point()) {
     const DraftKey* point = item.find("point");
     if (point == nullptr) {
       context.error(item.mark, "missing-key", fmt::format("task '{}' needs a `point`", item.name));
@@ -257,46 +278,35 @@ std::optional<TaskSpec> compile_task(LoadContext& context, const DraftItem& item
     spec.point = find_point(context, *point->node);
     if (spec.point < 0) return std::nullopt;
   }
-  const DraftKey* axes_key = item.find(type->joints ? "joints" : "axes");
-  const int before = context.diagnostics.error_count();
-  const std::vector<int> axes = read_axes(
-      context, *type, axes_key == nullptr ? nullptr : axes_key->node, context.diagnostics);
-  if (context.diagnostics.error_count() != before) return std::nullopt;
-  if (axes.empty()) {
-    if (axes_key != nullptr && axes_key->node->is_sequence() && axes_key->node->items.empty()) {
-      context.error(axes_key->node->mark, "empty-value",
-                    fmt::format("`{}: []` leaves nothing to control: name some, or remove the task "
-                                "with `{}: off`",
-                                axes_key->key, item.name));
-    }
-    return std::nullopt;
-  }
-  const std::vector<std::string> all = all_axes(context, *type);
+  const DraftKey* axes_key = item.find(info.of_joints() ? "joints" : "axes");
+  const std::vector<int> axes = controlled_axes(context, item, *type, axes_key);
+  if (axes.empty()) return std::nullopt;
+  const std::vector<std::string> all = tasks::axis_names(*type, context.behavior.robot);
   std::vector<std::string> names;
   std::vector<core::Dimension> positions;
   std::vector<core::Dimension> accelerations;
   std::vector<AxisSpec> specs;
   for (const int axis : axes) {
     names.push_back(all[static_cast<std::size_t>(axis)]);
-    positions.push_back(type->position(axis));
-    accelerations.push_back(type->acceleration(axis));
+    positions.push_back(info.dimension(axis));
+    accelerations.push_back(info.commanded_dimension(axis));
     specs.emplace_back();
     specs.back().axis = axis;
     specs.back().mark = axis_mark(item, axes_key, specs.size() - 1, axes.size());
   }
-  compile_frame(context, item, *type, axes, spec);
+  compile_frame(context, item, info, axes, spec);
   if (const DraftKey* priority = item.find("priority")) {
     spec.priority = static_cast<int>(
         core::read_integer(*priority->node, 1, 1000, context.diagnostics).value_or(1));
   }
-  AxesScope scope{names, positions, positions, 0, type->joints, false};
-  compile_gains(context, item, draft, *type, scope, specs);
+  AxesScope scope{names, positions, positions, 0, info.of_joints(), false};
+  compile_gains(context, item, draft, info, scope, specs);
   compile_reference(context, item, scope, spec, specs);
   scope.dimensions = accelerations;
   compile_limits(context, item, "acceleration_limit", scope, &AxisSpec::acceleration_limit, specs);
   scope.dimensions = scaled(positions, core::kTime);
   compile_limits(context, item, "integral_limit", scope, &AxisSpec::integral_limit, specs);
-  warn_idle_limit(context, item, *type, specs);
+  warn_idle_limit(context, item, info, specs);
   scope.dimensions.assign(positions.size(), core::kNone);
   compile_limits(context, item, "weight", scope, &AxisSpec::weight, specs);
   spec.instance = find_instance(context, item, spec.type, spec.point);

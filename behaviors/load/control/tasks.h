@@ -8,7 +8,6 @@
 #include "behaviors/load/context.h"
 #include "behaviors/load/control/axes.h"
 #include "behaviors/load/control/overlay.h"
-#include "behaviors/load/control/task_types.h"
 
 namespace footfall::behaviors {
 

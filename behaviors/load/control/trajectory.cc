@@ -241,10 +241,9 @@ void compile_waypoints(LoadContext& context, const Words& words, const AxesScope
 // A surface applies only to a height in the world frame.
 void check_surface(LoadContext& context, const Words& words, const AxesScope& axes,
                    const TaskSpec& spec) {
-  const bool place = spec.type == tasks::TaskType::com_position ||
-                     spec.type == tasks::TaskType::point_position ||
-                     spec.type == tasks::TaskType::frame_pose;
-  if (!place || axes.names != std::vector<std::string>{"z"} || spec.frame != tasks::Frame::world) {
+  const bool has_velocity = tasks::info(spec.type).velocity != nullptr;  // of x, where z follows
+  if (!has_velocity || axes.names != std::vector<std::string>{"z"} ||
+      spec.frame != tasks::Frame::world) {
     context.error(words.find("trajectory")->mark, "misplaced-name",
                   "the surface is a height of the world: it goes with `axes: [z]` and `frame: "
                   "world` of a position");

@@ -5,8 +5,9 @@
 
 #include <set>
 
-#include "behaviors/load/control/task_types.h"
+#include "behaviors/compiled/signals.h"
 #include "model/robot/keys.h"
+#include "tasks/task_types.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -50,13 +51,21 @@ TEST(Language, AKeyOfSomeVariantsNamesOnlyWordsOfTheSelector) {
     }
   }
 }
-TEST(Language, EveryTaskTypeOfTheTablesIsOneOfTheLoader) {
-  for (const core::WordSpec& type : kTaskTypes) {
-    const TaskTypeInfo* info = find_task_type(type.word);
-    ASSERT_NE(info, nullptr) << type.word;
-    EXPECT_EQ(core::belongs_to(*core::find_key(kTaskKeys, "joints"), type.word), info->joints);
-    EXPECT_EQ(core::belongs_to(*core::find_key(kTaskKeys, "axes"), type.word), !info->joints);
+TEST(Language, ATaskHasTheKeysThatItsTypeUses) {
+  const auto has = [](const char* key, std::string_view type) {
+    return core::belongs_to(*core::find_key(kTaskKeys, key), type);
+  };
+  for (const char* key : {"axes", "point", "frame", "reference"}) {
+    EXPECT_EQ(has(key, "point_position"), true) << key;
+    EXPECT_EQ(has(key, "joint_damping"), false) << key;
   }
+  EXPECT_TRUE(has("joints", "joint_damping"));
+  EXPECT_TRUE(has("joints", "joint_posture"));
+  EXPECT_TRUE(has("reference", "joint_posture"));
+  EXPECT_FALSE(has("joints", "frame_pose"));
+  EXPECT_FALSE(has("point", "com_position"));
+  EXPECT_TRUE(has("frame", "centroidal_angular_momentum"));
+  EXPECT_TRUE(has("weight", "joint_damping"));
 }
 // A lone signal is told from a word by its dot; editors know those without one by name
 // (apps/reference/scalar_patterns.cc).
