@@ -15,13 +15,13 @@ constexpr int kOutsideCapacity = 128;
 }  // namespace
 
 struct Machine::Impl {
-  Impl(const Behavior& b, core::SignalTable& s)
+  Impl(const Behavior& b, core::SignalTable& s, const model::ControlModel* model)
       : behavior(b),
         signals(s),
         values(b.values),
         known_values(b.values),
         statechart(b, s.values(), values),
-        control(b, statechart),
+        control(b, statechart, model),
         planners(b, statechart, s, values),
         outside(kOutsideCapacity) {
     fault_events.reserve(2 * core::kFaultCount);
@@ -45,29 +45,32 @@ struct Machine::Impl {
   double steps = 0.0;
 };
 
-Machine::Machine(const Behavior& behavior, core::SignalTable& signals)
-    : impl_(std::make_unique<Impl>(behavior, signals)) {}
+Machine::Machine(const Behavior& behavior, core::SignalTable& signals,
+                 const model::ControlModel* model)
+    : impl_(std::make_unique<Impl>(behavior, signals, model)) {}
 Machine::~Machine() = default;
 
 void Machine::set_surface(const model::HeightSurface& surface) {
   impl_->control.set_surface(surface);
 }
 
-void Machine::start(const Measure&) noexcept {
+void Machine::start() noexcept {
   impl_->raise_contacts(false);
   impl_->planners.start();
   impl_->statechart.start(0);
   impl_->started = true;
 }
 
-void Machine::tick(std::int64_t tick, const Measure& measure) noexcept {
+void Machine::tick(std::int64_t tick) noexcept {
   Impl& m = *impl_;
   m.statechart.begin_tick(tick);
   m.raise_events();
   m.statechart.run();
   m.planners.update();
   if (m.behavior.has_robot) {
-    m.control.update(measure, m.started || !m.statechart.transitions_taken().empty());
+    m.control.update(m.started || !m.statechart.transitions_taken().empty());
+    const tasks::ControlSet& set = m.control.control().primary;
+    m.planners.observe({set.contacts.data(), at(set.contact_count)});
   }
   m.started = false;
   for (const int mark : m.statechart.marks()) m.steps += mark == m.behavior.step ? 1.0 : 0.0;

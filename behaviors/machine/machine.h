@@ -15,24 +15,13 @@
 #include "behaviors/statechart/statechart.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
+#include "model/control_model.h"
 #include "model/height_surface.h"
 #include "tasks/active_set.h"
 
 namespace footfall::behaviors {
 
 struct TakeOverMap;
-
-// Where the machine reads what a task measures now (references start "from what is measured").
-class Measure {
- public:
-  virtual ~Measure() = default;
-  // Position of one axis of a task type (m or rad); point: index into the model's points.
-  virtual double position(tasks::TaskType type, int point, int axis) const noexcept = 0;
-  // Velocity of the same for positions (com_position, point_position, frame_pose's x y z).
-  virtual double velocity(tasks::TaskType, int /*point*/, int /*axis*/) const noexcept {
-    return 0.0;
-  }
-};
 
 // Asked for by an `invoke` in this tick.
 struct PlanRequest {
@@ -41,6 +30,7 @@ struct PlanRequest {
   int stance = -1;             // contact indices
   int swing = -1;
   double switch_in = 0.0;  // s until the support changes, counted from now
+  FootPlannerInput input;  // of the tick that asks
 };
 
 // What came back.
@@ -57,18 +47,20 @@ struct PlanAnswer {
 class Machine {
  public:
   // `signals` is the run's table (values are read each tick and planner rows written), laid out by
-  // behavior.layout. Both must outlive the machine.
-  Machine(const Behavior& behavior, core::SignalTable& signals);
+  // behavior.layout. `model`, updated before each tick, gives what tasks measure, where references
+  // start; nullptr: no robot, every task measures 0. All must outlive the machine.
+  Machine(const Behavior& behavior, core::SignalTable& signals,
+          const model::ControlModel* model = nullptr);
   ~Machine();
 
   // The world's walking surface, flat unless set; before start().
   void set_surface(const model::HeightSurface& surface);
 
   // Enters the initial configuration at tick 0; signals hold the first measurement.
-  void start(const Measure& measure) noexcept;
+  void start() noexcept;
   // One macro step per behavior-language section 5 rule 3, then references of the active control.
   // `tick` counts control periods since start (skipped ones included).
-  void tick(std::int64_t tick, const Measure& measure) noexcept;
+  void tick(std::int64_t tick) noexcept;
 
   // Goes on from where the machine of another behavior is, between two ticks, instead of start():
   // its configuration and clocks (Statechart::take_over), references, parameters' values, events

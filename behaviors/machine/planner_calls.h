@@ -9,6 +9,7 @@
 
 #include "behaviors/compiled/behavior.h"
 #include "behaviors/machine/machine.h"
+#include "behaviors/planners/observation.h"
 #include "behaviors/statechart/statechart.h"
 
 namespace footfall::behaviors {
@@ -19,15 +20,22 @@ struct TakeOverMap;
 FootPlannerSpec spec_in_force(const PlannerInfo& planner,
                               std::span<const double> parameters) noexcept;
 
+// The plan of the closed form for a request's input.
+PlanAnswer answer_of(const Behavior& behavior, const PlanRequest& request,
+                     std::span<const double> parameters) noexcept;
+
 class PlannerCalls {
  public:
   PlannerCalls(const Behavior& behavior, Statechart& statechart, core::SignalTable& signals,
                std::span<const double> parameters);
 
-  // Remembers on which side of each other the feet are (the signals hold the first measurement).
+  // Each foot belongs to the side of the base on which it stands at the start (the signals hold the
+  // first measurement); later the feet may be close together or cross, and must not change sides.
   void start() noexcept;
   // After the statechart's tick: exits cancel, deadlines pass, planners are asked.
   void update() noexcept;
+  // At the end of every tick: what the planners see, and the input of this tick's requests.
+  void observe(std::span<const int> stance_contacts) noexcept;
   // Writes the answer's signals; false: it was cancelled, late, or never asked for.
   bool deliver(const PlanAnswer& answer) noexcept;
 
@@ -67,6 +75,9 @@ class PlannerCalls {
   void leave(const InvokeInfo& invoke, Call& call) noexcept;
   void ask(const InvokeInfo& invoke, Call& call) noexcept;
   void replace_late(const InvokeInfo& invoke, const Outstanding& request) noexcept;
+  FootPlannerInput input_of(int planner, int stance, int swing, double switch_in) const noexcept;
+  std::array<double, 2> wanted_goal(const PlannerInfo& planner) const noexcept;
+  std::array<double, 3> signal3(int first) const noexcept;
   void write(int planner, const PlanAnswer& answer, double switch_time, bool late) noexcept;
   void emit(int event) noexcept;
   // Ticks that a time lasts; -1 and error.execution if it is no valid time.
@@ -79,8 +90,8 @@ class PlannerCalls {
   std::vector<Call> calls_;  // by Behavior::invokes
   std::vector<PlanRequest> requests_;
   std::vector<int> events_;
-  std::array<double, core::kMaxContacts>
-      lateral_{};  // m, of each contact at the start, to the left
+  std::array<PlannerObservation, core::kMaxPlanners> seen_{};  // by Behavior::planners
+  std::array<double, core::kMaxContacts> side_{};              // +1 left, -1 right of the base
   std::uint32_t sequence_ = 0;
 };
 

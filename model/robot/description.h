@@ -81,6 +81,7 @@ struct RobotDescription {
   double rate_hz() const { return static_cast<double>(rate_mhz) * 1e-3; }
   double period_s() const { return 1e3 / static_cast<double>(rate_mhz); }
   int joint_count() const { return static_cast<int>(joints.size()); }
+  std::vector<double> torque_limits() const;  // N m, by joint; infinite where none is given
   int find_joint(std::string_view name) const;
   int find_contact(std::string_view name) const;
   int find_group(std::string_view name) const;

@@ -91,10 +91,11 @@ int run(const char* behavior_name) {
     if (loop.time() > kSettled && ended) {
       tasks::WholeBodyController twin = law;  // same integrals
       const tasks::ActiveControl old = carried_to_end(previous, now);
-      twin.compute(old, loop.ticks(), loop.sensors().tau.data());
+      std::array<double, core::kMaxJoints> carried{};
+      twin.compute(old, loop.ticks(), loop.sensors().tau.data(), carried.data());
       const double* after =
           now.has_other && now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      declared = std::max(declared, largest_difference(twin.result().tau.data(), after, n));
+      declared = std::max(declared, largest_difference(carried.data(), after, n));
       const double jump = largest_difference(twin.tau_primary(), twin.tau_other(), n);
       undeclared_min = std::min(undeclared_min, jump);
       undeclared_max = std::max(undeclared_max, jump);

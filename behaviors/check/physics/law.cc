@@ -162,10 +162,10 @@ RestSolution PhysicsLaw::rest(const ControlSpec& control, const std::vector<doub
     set.internals[at(set.internal_count++)] = {spec.instance, spec.contact_a, spec.contact_b,
                                                internal[at(k)], 0.0};
   }
-  controller_.compute(*control_, 0, nullptr);
   RestSolution result;
+  result.tau.resize(at(model_.joint_count()));
+  controller_.compute(*control_, 0, nullptr, result.tau.data());
   const tasks::ControllerResult& out = controller_.result();
-  result.tau.assign(out.tau.begin(), out.tau.begin() + model_.joint_count());
   for (const int contact : control.contacts) result.forces.push_back(out.force[at(contact)]);
   return result;
 }
