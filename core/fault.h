@@ -14,16 +14,17 @@ enum class Fault : std::uint8_t {
   torque_limit,       // a commanded torque beyond the joint's limit (clamped)
   torque_step,        // a torque step beyond the robot's bound between neighbouring ticks
   joint_limit,        // a joint beyond its position limits
-  swing_too_long,     // a foot in the air for more than 1 s while stepping
+  swing_too_long,     // a foot in the air for longer than the robot's limit while stepping
   simulator_warning,  // MuJoCo's warnings, a reset, a bad value
   sensor_stale,       // no new sensor data
   imu_stale,          // no new IMU data
   mocap_stale,        // no new motion capture data
-  tick_overrun,       // the tick missed its deadline
+  tick_overrun,       // ticks began late: each counts, several in a row are the fault
   planner_late,       // a plan came after its deadline
   execution,          // error.execution of the statechart
   event_overflow,     // an event queue was full
   rank_loss,          // a task level lost rank that it has at load
+  no_estimate,        // the estimator cannot give a state
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -36,7 +37,7 @@ constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
       "fall",         "non_finite",   "torque.limit", "torque.step",    "joint.limit",
       "swing.long",   "simulator",    "sensor.stale", "imu.stale",      "mocap.stale",
-      "tick.overrun", "planner.late", "execution",    "event.overflow", "rank.loss"};
+      "tick.overrun", "planner.late", "execution",    "event.overflow", "rank.loss",  "no_estimate"};
   return names[static_cast<std::size_t>(fault)];
 }
 

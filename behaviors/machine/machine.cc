@@ -25,6 +25,7 @@ struct Machine::Impl {
         planners(b, statechart, s, values),
         outside(kOutsideCapacity) {
     fault_events.reserve(2 * core::kFaultCount);
+    lost.reserve(kOutsideCapacity);
   }
 
   void raise_events() noexcept;
@@ -39,6 +40,7 @@ struct Machine::Impl {
   ControlMerge control;
   PlannerCalls planners;
   EventQueue outside;
+  std::vector<int> lost;  // outside events of this tick that found the queue full
   std::vector<int> fault_events;
   std::array<bool, core::kMaxContacts> contact{};
   bool started = false;
@@ -65,6 +67,7 @@ void Machine::tick(std::int64_t tick) noexcept {
   Impl& m = *impl_;
   m.statechart.begin_tick(tick);
   m.raise_events();
+  m.lost.clear();
   m.statechart.run();
   m.planners.update();
   if (m.behavior.has_robot) {
@@ -138,18 +141,16 @@ void Machine::Impl::raise_parameters() noexcept {
 }
 
 const tasks::ActiveControl& Machine::control() const noexcept { return impl_->control.control(); }
+int Machine::control_spec() const noexcept { return impl_->statechart.control(); }
+bool Machine::stepping() const noexcept { return impl_->steps > 0.0; }
 bool Machine::finished() const noexcept { return impl_->statechart.finished(); }
 
 bool Machine::raise(int event) noexcept {
   if (event < 0) return true;  // nothing listens to it
   if (impl_->outside.push(event)) return true;
+  if (impl_->lost.size() == impl_->lost.capacity()) return false;  // counted often enough
+  impl_->lost.push_back(event);
   impl_->statechart.count_fault(core::Fault::event_overflow);
-  const int overflow = impl_->behavior.event_overflow;
-  auto& faults = impl_->fault_events;
-  if (std::find(faults.begin(), faults.end(), overflow) == faults.end() &&
-      faults.size() < faults.capacity()) {
-    faults.push_back(overflow);
-  }
   return false;
 }
 
@@ -158,12 +159,16 @@ void Machine::copy_outside_events(std::vector<int>& events) const noexcept {
   for (int i = 0; i < queue.size() && events.size() < events.capacity(); ++i) {
     events.push_back(queue.at(i));
   }
+  for (const int event : impl_->lost) {
+    if (events.size() < events.capacity()) events.push_back(event);
+  }
 }
 
 void Machine::raise_fault(core::Fault fault, core::Reaction reaction) noexcept {
   const int event = impl_->behavior.fault_events[at(static_cast<int>(fault))];
   auto& faults = impl_->fault_events;
-  if (faults.size() < faults.capacity()) faults.push_back(event);
+  const bool waits = std::find(faults.begin(), faults.end(), event) != faults.end();
+  if (!waits && faults.size() < faults.capacity()) faults.push_back(event);
   if (reaction == core::Reaction::safe_state) enter_safe();
 }
 

@@ -70,12 +70,15 @@ class Machine {
   bool has_configuration_of(const Machine& old, const TakeOverMap& map) const noexcept;
 
   const tasks::ActiveControl& control() const noexcept;
+  int control_spec() const noexcept;  // of its primary law: index into Behavior::controls
+  bool stepping() const noexcept;     // the behavior has marked a step
   bool finished() const noexcept;  // a final child of the root was entered
 
-  // Outside events, by id (Behavior::find_event); false: the queue is full (counted, raised).
+  // Outside events, by id (Behavior::find_event); false: the queue is full (counted as event.overflow, at most 128 a tick).
   bool raise(int event) noexcept;
   std::size_t outside_room() const noexcept;  // how many more may be raised before the next tick
-  // Those that wait for the next tick, in order, at the end of `events` as far as it has room.
+  // Those that wait for the next tick, in order, then those that found the queue full, at the end
+  // of `events` as far as it has room: raised again they leave the same queue and faults.
   void copy_outside_events(std::vector<int>& events) const noexcept;
   // Fault events `fault.NAME`; with reaction safe_state the `safe` state is entered at this tick.
   void raise_fault(core::Fault fault, core::Reaction reaction) noexcept;

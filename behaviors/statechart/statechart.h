@@ -55,7 +55,7 @@ class Statechart {
   void start(std::int64_t tick) noexcept;
   // Forgets what the last tick recorded; call before this tick's raise().
   void begin_tick(std::int64_t tick) noexcept;
-  // Appends to the external queue; false: full (counted, and fault.event.overflow is raised).
+  // Appends to the external queue; false: full (counted as event.overflow).
   bool raise(int event) noexcept;
   // The safe state is entered ahead of this tick's transitions (rule 10).
   void request_safe() noexcept { safe_requested_ = true; }
@@ -170,7 +170,6 @@ class Statechart {
   int steps_ = 0;  // micro steps of this tick
   bool finished_ = false;
   bool safe_requested_ = false;
-  bool overflowed_ = false;
   bool recorded_start_ = false;  // start()'s marks are still to be shown
 };
 

@@ -13,6 +13,7 @@
 #include "engine/estimators/true_state.h"
 #include "engine/tick/faults.h"
 #include "engine/tick/outside.h"
+#include "engine/tick/rank_watch.h"
 #include "engine/tick/safety.h"
 #include "engine/tick/settings.h"
 #include "engine/tick/signals.h"
@@ -36,7 +37,8 @@ class ControlLoop {
               const LoopSettings& settings);
 
   // Starts the hardware, reads it once and enters the behavior's initial state; once in a loop's
-  // life (integrals, fault counters and parameters are those of one run). May throw.
+  // life (integrals, fault counters and parameters are those of one run). Throws what the hardware
+  // throws, and std::runtime_error if the estimator cannot give a state.
   void start();
 
   // The parts of a tick, so that a caller can time control apart from the backend. Allocate
@@ -45,6 +47,9 @@ class ControlLoop {
   void compute() noexcept;  // estimate ... safety filter; commands are ready
   void actuate() noexcept;  // hardware write; the backend advances
   LoopState tick() noexcept;
+  // Before sense() of a paced tick: whether it begins late. Late ticks are counted (tick.overrun);
+  // as many in a row as the robot's `limits.overruns` have the fault's reaction.
+  void late(bool late) noexcept { outside_.late(late); }
 
   LoopState state() const noexcept;
   std::int64_t ticks() const noexcept { return tick_; }
@@ -111,6 +116,7 @@ class ControlLoop {
   EditDoor edits_;
   TrueStateEstimator estimator_;
   tasks::WholeBodyController controller_;
+  RankWatch ranks_;
   SafetyFilter safety_;
   FaultMonitor faults_;
   SignalWriter writer_;
@@ -120,8 +126,5 @@ class ControlLoop {
   model::State estimate_;
   bool fresh_ = true;  // the last sense() read something new
 };
-
-// Capacities that a behavior needs at worst, for the whole-body controller.
-tasks::ControllerSizes controller_sizes(const behaviors::Behavior& behavior);
 
 }  // namespace footfall::engine

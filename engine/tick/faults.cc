@@ -28,30 +28,49 @@ void FaultMonitor::take(const FaultFindings& findings, behaviors::Machine& machi
 }
 
 void FaultMonitor::take_counts(behaviors::Machine& machine) noexcept {
-  if (probation_ && machine.faults().of(Fault::execution) > of_machine_.of(Fault::execution)) {
-    failed_by_ = Fault::execution;
+  for (const Fault fault : {Fault::planner_late, Fault::execution, Fault::event_overflow}) {
+    const auto index = static_cast<std::size_t>(fault);
+    const std::int64_t count = machine.faults().count[index] - of_machine_.count[index];
+    if (count == 0) continue;
+    counters_.count[index] += count;
+    react(fault, machine);
   }
   of_machine_ = machine.faults();
 }
 
+void FaultMonitor::take_late(bool late, behaviors::Machine& machine) noexcept {
+  overruns_ = late ? overruns_ + 1 : 0;
+  if (!late) return;
+  counters_.add(Fault::tick_overrun);
+  if (overruns_ == behavior_.robot.overruns) react(Fault::tick_overrun, machine);
+}
+
 bool FaultMonitor::is_grave(std::size_t fault) const noexcept {
   const auto which = static_cast<Fault>(fault);
-  return which == Fault::fall || which == Fault::simulator_warning ||
+  return which == Fault::fall || which == Fault::simulator_warning || which == Fault::execution ||
          behavior_.robot.reactions[fault] != Reaction::keep_going;
 }
 
+// A behavior without a safe state has nowhere to go on: its run stops.
+Reaction FaultMonitor::reaction_to(Fault fault) const noexcept {
+  const Reaction reaction = behavior_.robot.reactions[static_cast<std::size_t>(fault)];
+  const bool nowhere = reaction == Reaction::safe_state && behavior_.safe_transition < 0;
+  return nowhere ? Reaction::safe_stop : reaction;
+}
+
 void FaultMonitor::react(Fault fault, behaviors::Machine& machine) noexcept {
-  const auto index = static_cast<std::size_t>(fault);
-  if (probation_ && is_grave(index)) {
+  if (probation_ && is_grave(static_cast<std::size_t>(fault))) {
     failed_by_ = fault;
     return;
   }
-  const Reaction reaction = behavior_.robot.reactions[index];
+  const Reaction reaction = reaction_to(fault);
   machine.raise_fault(fault, reaction);
-  if (fault == Fault::fall || fault == Fault::simulator_warning) {
+  const bool stops = reaction == Reaction::safe_stop;
+  if (fault == Fault::fall || fault == Fault::simulator_warning ||
+      (stops && fault == Fault::swing_too_long)) {
     if (state_ != LoopState::fallen) ended_by_ = fault;
     state_ = LoopState::fallen;
-  } else if (reaction == Reaction::safe_stop && state_ == LoopState::running) {
+  } else if (stops && state_ == LoopState::running) {
     state_ = LoopState::stopped;
     ended_by_ = fault;
   }
@@ -71,6 +90,7 @@ void FaultMonitor::take_over(const FaultMonitor& old, bool forgive) noexcept {
   last_place_ = old.last_place_;
   worst_place_ = old.worst_place_;
   ended_by_ = old.ended_by_;
+  overruns_ = old.overruns_;
   failed_by_ = Fault::count;
   state_ = LoopState::running;
 }

@@ -10,9 +10,10 @@
 namespace footfall::engine {
 
 // Where and how much, for faults of a joint: torque.limit (torque asked for, N m), torque.step
-// (change since the last tick, N m), joint.limit (position, rad).
+// (change since the last tick, N m), joint.limit (position, rad); of a contact: swing.long (time in
+// the air, s).
 struct FaultPlace {
-  int joint = -1;  // -1: no joint's
+  int joint = -1;  // or contact; -1: the fault has no place
   double value = 0.0;
   double excess = 0.0;  // beyond the limit; the largest is kept
 };
@@ -50,10 +51,14 @@ class FaultMonitor {
   // checks of a tick may find the same one.
   void take(const FaultFindings& findings, behaviors::Machine& machine) noexcept;
 
-  // What the machine counted since the last tick.
+  // What the machine counted since the last tick: each one counts, a tick with any has one reaction.
   void take_counts(behaviors::Machine& machine) noexcept;
+  // Whether this tick began late. Each late one counts; as many in a row as the robot's
+  // `limits.overruns` have the reaction of tick.overrun.
+  void take_late(bool late, behaviors::Machine& machine) noexcept;
 
-  // While on probation, a fault with a reaction is remembered and not reacted to.
+  // While on probation, a fault with a reaction, or an error.execution, is remembered and not
+  // reacted to.
   void set_probation(bool on) noexcept;
   core::Fault failed_by() const noexcept { return failed_by_; }  // Fault::count: none yet
 
@@ -75,6 +80,7 @@ class FaultMonitor {
 
  private:
   bool is_grave(std::size_t fault) const noexcept;  // it ends the run or has a reaction
+  core::Reaction reaction_to(core::Fault fault) const noexcept;
   void react(core::Fault fault, behaviors::Machine& machine) noexcept;
 
   const behaviors::Behavior& behavior_;
@@ -86,6 +92,7 @@ class FaultMonitor {
   core::Fault ended_by_ = core::Fault::count;
   core::Fault failed_by_ = core::Fault::count;
   LoopState state_ = LoopState::running;
+  int overruns_ = 0;  // late ticks in a row
   bool probation_ = false;
 };
 

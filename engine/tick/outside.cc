@@ -43,16 +43,18 @@ void Outside::start(const behaviors::Machine& machine) noexcept {
   watch_.remember(machine.parameters());
 }
 
-void Outside::deliver(std::int64_t tick, behaviors::Machine& machine, bool edited) noexcept {
+bool Outside::deliver(std::int64_t tick, behaviors::Machine& machine, bool edited) noexcept {
   limit_steps_ = playing_ ? trace_->limit_steps : edited || taken_over_;
-  taken_over_ = false;
+  const bool late = playing_ ? trace_->late : late_;
+  late_ = taken_over_ = false;
   if (playing_) {
     replay(tick, machine);
-    return;
+    return late;
   }
   if (trace_ != nullptr) {
     trace_->clear();
     trace_->limit_steps = limit_steps_;
+    trace_->late = late;
   }
   planners_.deliver(tick, machine, trace_ != nullptr ? &trace_->plans : nullptr);
   if (scripts_) scripts_->deliver(machine);
@@ -60,6 +62,7 @@ void Outside::deliver(std::int64_t tick, behaviors::Machine& machine, bool edite
     watch_.find(machine.parameters(), trace_->writes);
     machine.copy_outside_events(trace_->events);
   }
+  return late;
 }
 
 void Outside::replay(std::int64_t tick, behaviors::Machine& machine) noexcept {
@@ -78,9 +81,10 @@ FaultFindings Outside::post(std::int64_t tick, const behaviors::Machine& machine
   FaultFindings findings;
   if (trace_ != nullptr) watch_.remember(machine.parameters());
   planners_.post(tick, machine);
-  if (scripts_ && !scripts_->post(machine, signals.values(), time)) {
-    findings.add(core::Fault::event_overflow);
-  }
+  const bool lost = playing_ ? trace_->requests_lost
+                             : scripts_ && !scripts_->post(machine, signals.values(), time);
+  if (lost) findings.add(core::Fault::event_overflow);
+  if (trace_ != nullptr) trace_->requests_lost = lost;
   return findings;
 }
 

@@ -27,9 +27,11 @@ class Outside {
 
   // After the machine's start.
   void start(const behaviors::Machine& machine) noexcept;
+  // Before sense(): whether the next tick begins late.
+  void late(bool late) noexcept { late_ = late; }
   // Before the machine's tick. edited: an edit moves values in this tick, or the command has not
-  // caught up with one yet.
-  void deliver(std::int64_t tick, behaviors::Machine& machine, bool edited) noexcept;
+  // caught up with one yet. Returns whether this tick began late.
+  bool deliver(std::int64_t tick, behaviors::Machine& machine, bool edited) noexcept;
   // After the machine's tick; finds event.overflow if requests of scripts were dropped. time: s
   // since start.
   FaultFindings post(std::int64_t tick, const behaviors::Machine& machine,
@@ -55,6 +57,7 @@ class Outside {
   WriteWatch watch_;
   InputTrace* trace_ = nullptr;
   bool playing_ = false;
+  bool late_ = false;
   bool taken_over_ = false;  // since the last tick
   bool limit_steps_ = false;
 };

@@ -44,10 +44,22 @@ FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors
 
 SafetyFilter::SafetyFilter(const model::RobotDescription& robot) : robot_(robot) {}
 
-FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, bool fresh,
-                                        const model::ControlModel& model) const noexcept {
+void SafetyFilter::check_swings(const hal::Sensors& sensors, bool stepping,
+                                FaultFindings& findings) noexcept {
+  for (std::size_t c = 0; c < robot_.contacts.size(); ++c) {
+    air_ticks_[c] = sensors.contact[c] ? 0 : air_ticks_[c] + 1;
+    const double time = static_cast<double>(air_ticks_[c]) * robot_.period_s();
+    if (!stepping || time <= robot_.swing_limit) continue;
+    findings.add(Fault::swing_too_long, {static_cast<int>(c), time, time - robot_.swing_limit});
+  }
+}
+
+FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, const TickStart& tick,
+                                        const model::ControlModel& model) noexcept {
   FaultFindings findings;
-  if (!fresh) findings.add(Fault::sensor_stale);
+  if (!tick.fresh) findings.add(Fault::sensor_stale);
+  if (!tick.estimated) findings.add(Fault::no_estimate);
+  check_swings(sensors, tick.stepping, findings);
   if (sensors.backend_fault) findings.add(Fault::simulator_warning);
   if (!sensors.imu_fresh) findings.add(Fault::imu_stale);
   if (!sensors.mocap_fresh) findings.add(Fault::mocap_stale);

@@ -21,15 +21,22 @@ struct FallCriteria {
 FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,
                         const model::ControlModel& model) noexcept;
 
+// What else a tick knows when its state is checked.
+struct TickStart {
+  bool fresh = true;      // the last read brought something new
+  bool estimated = true;  // the estimator gave a state
+  bool stepping = false;  // the behavior has marked a step: a foot in the air is a swing
+};
+
 class SafetyFilter {
  public:
   explicit SafetyFilter(const model::RobotDescription& robot);
 
   // Before control: fall (height of the base above the lowest contact point below its part of the
-  // standing height, tilt beyond the limit, another body touching), joint limits, sensors and
-  // backend. fresh: the last read brought something new.
-  FaultFindings check_state(const hal::Sensors& sensors, bool fresh,
-                            const model::ControlModel& model) const noexcept;
+  // standing height, tilt beyond the limit, another body touching), joint limits, swings,
+  // sensors, estimator and backend. Once a tick: it counts how long each foot is in the air.
+  FaultFindings check_state(const hal::Sensors& sensors, const TickStart& tick,
+                            const model::ControlModel& model) noexcept;
 
   // After control: makes the torques asked for into those that are sent. If one is not finite all
   // are 0. The others are held within the joints' limits; steps are counted (the first tick has
@@ -39,6 +46,7 @@ class SafetyFilter {
 
   // Goes on from the commands that another filter of the same robot let pass.
   void take_over(const SafetyFilter& old) noexcept {
+    air_ticks_ = old.air_ticks_;
     previous_ = old.previous_;
     have_previous_ = old.have_previous_;
     torque_step_ = old.torque_step_;
@@ -50,7 +58,10 @@ class SafetyFilter {
   bool held_back() const noexcept { return held_back_; }
 
  private:
+  void check_swings(const hal::Sensors& sensors, bool stepping, FaultFindings& findings) noexcept;
+
   const model::RobotDescription& robot_;
+  std::array<std::int64_t, core::kMaxContacts> air_ticks_{};  // of each foot, since its lift-off
   std::array<double, core::kMaxJoints> previous_{};
   bool have_previous_ = false;
   double torque_step_ = 0.0;

@@ -48,7 +48,7 @@ class Run {
     engine::Pacer pacer(loop_->period());
     started_ = Clock::now();
     while (!ended()) {
-      if (spec_.realtime && !pacer.wait()) result_.faults.add(core::Fault::tick_overrun);
+      if (spec_.realtime) loop_->late(!pacer.wait());
       one_tick();
     }
     loop_->safe_stop();
@@ -175,10 +175,6 @@ class Run {
       case engine::LoopState::stopped:
         return end_with(RunEnd::fault);
     }
-    if (metrics_.counter().swing_too_long()) {
-      result_.faults.add(core::Fault::swing_too_long);
-      return end_with(RunEnd::fall);
-    }
     if (spec_.max_steps > 0 && metrics_.counter().steps() >= spec_.max_steps) {
       return end_with(RunEnd::steps);
     }
@@ -206,13 +202,10 @@ class Run {
     result_.real_time_factor = result_.wall_time > 0.0 ? loop_->time() / result_.wall_time : 0.0;
     result_.figures = metrics_.figures(result_.end == RunEnd::fall);
     if (result_.end == RunEnd::fall || result_.end == RunEnd::fault) {
-      result_.cause = explain_end(*loop_, metrics_.counter(), states_before_);
+      result_.cause = explain_end(*loop_, states_before_);
     }
     result_.worst = worst_faults(*loop_);
-    for (std::size_t i = 0; i < result_.faults.count.size(); ++i) {
-      result_.faults.count[i] += loop_->faults().count[i];
-      result_.faults.count[i] += loop_->machine().faults().count[i];
-    }
+    result_.faults = loop_->faults();
     if (spec_.allocations) result_.allocations = spec_.allocations();
     log_->event("end", run_end_name(result_.end), result_.cause ? result_.cause->text : "");
   }

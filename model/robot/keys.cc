@@ -8,7 +8,7 @@ using namespace core;  // the words in which tables are written
 
 constexpr WordSpec kReactionRows[] = {
     {"continue", "it is counted and logged"},
-    {"safe_state", "the behavior's `safe` state is entered"},
+    {"safe_state", "the behavior's `safe` state is entered; without one as safe_stop"},
     {"safe_stop", "the run ends at once"},
 };
 
@@ -40,8 +40,7 @@ constexpr KeySpec kRobotRows[] = {
     key("symmetry", map_of(kSymmetryKeys), "what changes places in a mirror image"),
     key("limits", map_of(kLimitsKeys), "beyond which something is wrong"),
     key("faults", by_name(choice(kReactionRows)),
-        "reactions by fault. Without a word: `fall` and `simulator` safe_state, `non_finite` "
-        "safe_stop, the others continue"),
+        "reactions by [fault](#faults)"),
 };
 
 constexpr KeySpec kJointRows[] = {
@@ -105,9 +104,14 @@ constexpr KeySpec kLimitsRows[] = {
         .otherwise("60 %"),
     key("torque_step", quantity(kTorque), "of a joint's torque between neighbouring ticks")
         .otherwise("none"),
+    key("swing", quantity(kTime), "of a foot in the air while the behavior steps").otherwise("1 s"),
     key("edit_ramp", quantity(kTime),
         "over which values move at least when a person changes them in a run")
         .otherwise("100 ms"),
+    key("overruns", integer(1, 1'000'000),
+        "late ticks in a row, after which `tick.overrun` has its reaction; single ones are counted "
+        "and logged")
+        .otherwise("15"),
     key("reload_watch", quantity(kTime),
         "how long after a reload a fault with a reaction brings the former behavior back")
         .otherwise("2 s"),
