@@ -72,9 +72,10 @@ class Machine {
   const tasks::ActiveControl& control() const noexcept;
   int control_spec() const noexcept;  // of its primary law: index into Behavior::controls
   bool stepping() const noexcept;     // the behavior has marked a step
-  bool finished() const noexcept;  // a final child of the root was entered
+  bool finished() const noexcept;     // a final child of the root was entered
 
-  // Outside events, by id (Behavior::find_event); false: the queue is full (counted as event.overflow, at most 128 a tick).
+  // Outside events, by id (Behavior::find_event); false: the queue is full (counted as
+  // event.overflow, at most 128 a tick).
   bool raise(int event) noexcept;
   std::size_t outside_room() const noexcept;  // how many more may be raised before the next tick
   // Those that wait for the next tick, in order, then those that found the queue full, at the end

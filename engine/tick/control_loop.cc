@@ -60,8 +60,8 @@ void ControlLoop::compute() noexcept {
   const bool estimated = estimator_.estimate(sensors_, estimate_);
   model_.update(estimate_);
   writer_.write_measured(time(), model_, sensors_);
-  faults_.take(
-      safety_.check_state(sensors_, {fresh_, estimated, machine_->stepping()}, model_), *machine_);
+  faults_.take(safety_.check_state(sensors_, {fresh_, estimated, machine_->stepping()}, model_),
+               *machine_);
   faults_.take_late(outside_.deliver(tick_, *machine_, edits_.moved() || safety_.held_back()),
                     *machine_);
   machine_->tick(tick_);

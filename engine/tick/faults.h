@@ -51,7 +51,8 @@ class FaultMonitor {
   // checks of a tick may find the same one.
   void take(const FaultFindings& findings, behaviors::Machine& machine) noexcept;
 
-  // What the machine counted since the last tick: each one counts, a tick with any has one reaction.
+  // What the machine counted since the last tick: each one counts, a tick with any has one
+  // reaction.
   void take_counts(behaviors::Machine& machine) noexcept;
   // Whether this tick began late. Each late one counts; as many in a row as the robot's
   // `limits.overruns` have the reaction of tick.overrun.

@@ -1,6 +1,6 @@
 // What reaches a tick from outside besides the sensors: parameters written and whether that limits
-// the torque's steps, events raised, planners' answers, whether it began late. A trace records it for the log; replay puts
-// it back at the same place in the tick.
+// the torque's steps, events raised, planners' answers, whether it began late. A trace records it
+// for the log; replay puts it back at the same place in the tick.
 #pragma once
 
 #include <cstdint>

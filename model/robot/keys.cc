@@ -39,8 +39,7 @@ constexpr KeySpec kRobotRows[] = {
     key("sensors", map_of(kSensorsKeys), "what is measured"),
     key("symmetry", map_of(kSymmetryKeys), "what changes places in a mirror image"),
     key("limits", map_of(kLimitsKeys), "beyond which something is wrong"),
-    key("faults", by_name(choice(kReactionRows)),
-        "reactions by [fault](#faults)"),
+    key("faults", by_name(choice(kReactionRows)), "reactions by [fault](#faults)"),
 };
 
 constexpr KeySpec kJointRows[] = {

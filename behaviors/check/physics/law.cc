@@ -146,7 +146,8 @@ std::vector<double> PhysicsLaw::freedom(const std::vector<int>& contacts,
 RestSolution PhysicsLaw::rest(const ControlSpec& control, const std::vector<double>& internal) {
   tasks::ControlSet& set = control_->primary;
   fill_control_set(behavior_, control, set);
-  for (int k = 0; k < control.internals.count; ++k) set.internals[at(k)].reference = internal[at(k)];
+  for (int k = 0; k < control.internals.count; ++k)
+    set.internals[at(k)].reference = internal[at(k)];
   RestSolution result;
   result.tau.resize(at(model_.joint_count()));
   controller_.compute(*control_, 0, nullptr, result.tau.data());
