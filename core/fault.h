@@ -24,6 +24,7 @@ enum class Fault : std::uint8_t {
   execution,          // error.execution of the statechart
   event_overflow,     // an event queue is full
   rank_loss,          // a task level lost rank that it has at load
+  no_estimate,        // the estimator cannot give a state
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -34,9 +35,9 @@ enum class Reaction : std::uint8_t { keep_going, safe_state, safe_stop };
 // Dotted name, e.g. "torque.limit".
 constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
-      "fall",         "non_finite",   "torque.limit", "torque.step",    "joint.limit",
-      "swing.long",   "simulator",    "sensor.stale", "imu.stale",      "mocap.stale",
-      "tick.overrun", "planner.late", "execution",    "event.overflow", "rank.loss"};
+      "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
+      "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
+      "execution", "event.overflow", "rank.loss",    "no_estimate"};
   return names[static_cast<std::size_t>(fault)];
 }
 

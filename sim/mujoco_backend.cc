@@ -57,7 +57,6 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
                                "' has no motor in the model");
     }
     actuator_.push_back(actuator);
-    torque_limit_.push_back(j.torque_limit);
   }
   contact_of_geom_.assign(at(model_->ngeom), kOtherBody);
   for (int g = 0; g < model_->ngeom; ++g) {
@@ -168,9 +167,7 @@ void MujocoBackend::sense_contacts(hal::Sensors& s) noexcept {
 void MujocoBackend::write(const hal::Commands& commands) noexcept {
   for (int step = 0; step < world_.physics.steps_per_tick; ++step) {
     std::vector<double>& slot = delay_line_[delay_head_];
-    for (std::size_t j = 0; j < slot.size(); ++j) {
-      slot[j] = std::clamp(commands.tau[j], -torque_limit_[j], torque_limit_[j]);
-    }
+    std::copy_n(commands.tau.begin(), slot.size(), slot.begin());
     delay_head_ = (delay_head_ + 1) % delay_line_.size();
     const std::vector<double>& now = delay_line_[delay_head_];  // oldest: written `delay` ago
     for (std::size_t j = 0; j < now.size(); ++j)

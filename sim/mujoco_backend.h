@@ -92,8 +92,7 @@ class MujocoBackend final : public hal::Hardware {
   mjData_* data_ = nullptr;
   std::vector<int> qpos_, dof_, actuator_;  // by joint of the robot file
   std::vector<int> contact_of_geom_;        // robot contact index, -1: ground, -2: another body
-  std::vector<double> torque_limit_;
-  std::vector<std::vector<double>> delay_line_;  // delay line, one entry a physics step
+  std::vector<std::vector<double>> delay_line_;  // commands on their way, one a physics step
   std::size_t delay_head_ = 0;
   std::array<ActivePush, kMaxPushes> pushes_{};
   std::array<HeldBody, kMaxHeld> held_{};

@@ -49,7 +49,7 @@ WholeBodyController::WholeBodyController(const model::ControlModel& model,
 }
 
 void WholeBodyController::compute(const ActiveControl& control, std::int64_t tick,
-                                  const double* tau_measured) noexcept {
+                                  const double* tau_measured, double* tau) noexcept {
   const bool frozen = control.has_other && control.form == TransitionForm::frozen;
   const bool both = control.has_other && (!frozen || control.transition_entered);
   std::fill(primary_.problem().external.begin(), primary_.problem().external.end(), 0.0);
@@ -63,11 +63,10 @@ void WholeBodyController::compute(const ActiveControl& control, std::int64_t tic
   const double w = both && !frozen ? control.other_weight : 0.0;
   const WboscSolution& a = primary_.solution();
   const WboscSolution& b = other_.solution();
-  result_.finite = a.finite && (!both || b.finite);
   result_.limited = a.limited || (both && b.limited);
   for (int j = 0; j < model_.joint_count(); ++j) {
-    result_.tau[at(j)] = a.tau[at(j)];
-    if (w > 0.0) result_.tau[at(j)] = (1.0 - w) * a.tau[at(j)] + w * b.tau[at(j)];
+    tau[j] = a.asked[at(j)];
+    if (w > 0.0) tau[j] = (1.0 - w) * a.asked[at(j)] + w * b.asked[at(j)];
   }
   report(control);
 }

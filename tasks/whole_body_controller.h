@@ -36,7 +36,6 @@ struct TaskReport {
 
 // Valid until the next compute().
 struct ControllerResult {
-  std::array<double, core::kMaxJoints> tau{};  // N m, after limits
   std::array<std::array<double, 3>, core::kMaxContacts>
       force{};                                        // N, ground on robot, per robot contact
   std::array<AxisEvaluation, core::kMaxAxes> axes{};  // as primary.axes
@@ -45,8 +44,7 @@ struct ControllerResult {
   std::array<double, core::kMaxInternal>
       internal{};  // N, mean convention, as primary.internals, predicted; NaN: no such contacts
   std::array<double, core::kMaxInternal> internal_measured{};  // N, from measured joint torque
-  bool limited = false;
-  bool finite = true;
+  bool limited = false;  // a law asks for more than a joint's limit
 };
 
 class WholeBodyController {
@@ -54,9 +52,11 @@ class WholeBodyController {
   WholeBodyController(const model::ControlModel& model, const std::vector<double>& torque_limits,
                       const ControllerSizes& sizes, double period);
 
-  // tau_measured: joint torques measured now (internal force feedback). Allocates nothing.
-  void compute(const ActiveControl& control, std::int64_t tick,
-               const double* tau_measured) noexcept;
+  // tau_measured: joint torques measured now (internal force feedback); nullptr: none. Writes the
+  // torque asked for, N m by joint, before limits, to `tau`; the result's forces and accelerations
+  // are those of each law within the limits. Allocates nothing.
+  void compute(const ActiveControl& control, std::int64_t tick, const double* tau_measured,
+               double* tau) noexcept;
 
   // Goes on with the integrals of another controller of the same robot; `instances`: its task
   // instances as they are numbered here, -1: not here.
@@ -66,9 +66,9 @@ class WholeBodyController {
   }
 
   const ControllerResult& result() const noexcept { return result_; }
-  // Torques of the two laws alone at the last tick (transition tests and logs).
-  const double* tau_primary() const noexcept { return primary_.solution().tau.data(); }
-  const double* tau_other() const noexcept { return other_.solution().tau.data(); }
+  // Torques that the two laws alone ask for at the last tick (transition tests and logs).
+  const double* tau_primary() const noexcept { return primary_.solution().asked.data(); }
+  const double* tau_other() const noexcept { return other_.solution().asked.data(); }
   const Wbosc& primary() const noexcept { return primary_; }
 
  private:

@@ -13,6 +13,8 @@
 #include "behaviors/language/language.h"
 #include "core/fault.h"
 #include "core/units/unit_list.h"
+#include "model/robot/fault_rules.h"
+#include "model/robot/keys.h"
 #include "tasks/task_types.h"
 
 namespace footfall::apps {
@@ -179,12 +181,15 @@ std::string events() {
 
 std::string faults() {
   std::string out =
-      "\n## Faults\n\nEach raises the event `fault.NAME`; the robot file's `faults` configures the "
-      "reactions.\n\n";
-  for (int k = 0; k < core::kFaultCount; ++k) {
-    out += fmt::format("{}`{}`", k == 0 ? "" : ", ", core::fault_name(static_cast<core::Fault>(k)));
+      "\n## Faults\n\nEach raises the event `fault.NAME` and has the reaction of the robot file's "
+      "`faults`; [faults.md](faults.md) describes each.\n\n"
+      "| fault | when | default reaction |\n|---|---|---|\n";
+  for (const model::FaultRule& rule : model::fault_rules()) {
+    const auto word = model::kReactions[static_cast<std::size_t>(rule.otherwise)].word;
+    out += fmt::format("| `{}` | {} | {}{} |\n", core::fault_name(rule.fault), rule.when, word,
+                       rule.refusing.empty() ? "" : "; never `continue`");
   }
-  return out + "\n";
+  return out;
 }
 
 }  // namespace

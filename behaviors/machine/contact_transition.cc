@@ -19,7 +19,7 @@ bool ControlMerge::transition_goes_on(const ControlSpec& spec) const noexcept {
          transition_serial_ == statechart_.entry_serial(owner);
 }
 
-void ControlMerge::update_transition(const ControlSpec& spec, const Measure& measure) noexcept {
+void ControlMerge::update_transition(const ControlSpec& spec) noexcept {
   if (spec.transition < 0) {
     control_.has_other = false;
     control_.moving_contact_count = 0;
@@ -32,11 +32,10 @@ void ControlMerge::update_transition(const ControlSpec& spec, const Measure& mea
     std::swap(other_, old_other_);
     return;
   }
-  begin_transition(behavior_.contact_transitions[at(spec.transition)], measure);
+  begin_transition(behavior_.contact_transitions[at(spec.transition)]);
 }
 
-void ControlMerge::begin_transition(const TransitionSpec& transition,
-                                    const Measure& measure) noexcept {
+void ControlMerge::begin_transition(const TransitionSpec& transition) noexcept {
   transition_serial_ = statechart_.entry_serial(transition.owner);
   control_.has_other = true;
   control_.transition_entered = true;
@@ -45,16 +44,16 @@ void ControlMerge::begin_transition(const TransitionSpec& transition,
   std::copy(transition.contacts.begin(), transition.contacts.end(),
             control_.moving_contacts.begin());
   if (transition.loads) {
-    fill(*other_, control_.other, behavior_.controls[at(transition.toward)], measure);
+    fill(*other_, control_.other, behavior_.controls[at(transition.toward)]);
   } else {
     const ControlSpec& left = behavior_.controls[at(statechart_.control_before(transition.owner))];
-    fill(*other_, control_.other, left, measure);
-    if (old_primary_->spec == &left) {  // active until now: keep its exact references
+    fill(*other_, control_.other, left);
+    if (old_primary_->spec == &left) {  // in force until now: exactly its references
       std::copy_n(old_primary_->axes.begin(), old_set_->axis_count, other_->axes.begin());
       std::copy_n(old_primary_->knots.begin(), old_primary_->knot_count, other_->knots.begin());
       other_->knot_count = old_primary_->knot_count;
     } else {
-      advance(*other_, control_.other, measure);  // passed through within the tick: start it here
+      advance(*other_, control_.other);  // passed in no time: as it would have begun
     }
     other_->frozen = true;
   }

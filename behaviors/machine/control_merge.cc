@@ -45,9 +45,11 @@ void clear_fresh(tasks::ControlSet& set) noexcept {
 
 }  // namespace
 
-ControlMerge::ControlMerge(const Behavior& behavior, Statechart& statechart)
+ControlMerge::ControlMerge(const Behavior& behavior, Statechart& statechart,
+                           const model::ControlModel* model)
     : behavior_(behavior),
       statechart_(statechart),
+      model_(model),
       primary_(std::make_unique<Bank>()),
       other_(std::make_unique<Bank>()),
       old_primary_(std::make_unique<Bank>()),
@@ -60,13 +62,13 @@ ControlMerge::ControlMerge(const Behavior& behavior, Statechart& statechart)
   }
 }
 
-void ControlMerge::update(const Measure& measure, bool moved) noexcept {
+void ControlMerge::update(bool moved) noexcept {
   control_.transition_entered = false;
   clear_fresh(control_.primary);
   clear_fresh(control_.other);
-  if (moved && changed()) rebuild(measure);
-  advance(*primary_, control_.primary, measure);
-  if (control_.has_other) advance(*other_, control_.other, measure);
+  if (moved && changed()) rebuild();
+  advance(*primary_, control_.primary);
+  if (control_.has_other) advance(*other_, control_.other);
   weigh_transition();
 }
 
@@ -83,7 +85,7 @@ bool ControlMerge::changed() const noexcept {
   return spec.transition >= 0 && !transition_goes_on(spec);
 }
 
-void ControlMerge::rebuild(const Measure& measure) noexcept {
+void ControlMerge::rebuild() noexcept {
   taken_over_ = false;
   const ControlSpec& spec = behavior_.controls[at(statechart_.control())];
   other_first_ = control_.has_other && control_.other_weight > 0.5 && !transition_goes_on(spec);
@@ -92,8 +94,8 @@ void ControlMerge::rebuild(const Measure& measure) noexcept {
   std::swap(other_, old_other_);
   copy_in_force(control_.primary, *old_set_);
   if (old_has_other_) copy_in_force(control_.other, *old_other_set_);
-  fill(*primary_, control_.primary, spec, measure);
-  update_transition(spec, measure);
+  fill(*primary_, control_.primary, spec);
+  update_transition(spec);
 }
 
 // A task before this tick (axis < 0), or one of its axes: searched first in the set with the
@@ -116,8 +118,7 @@ ControlMerge::Kept ControlMerge::find_kept(int instance, int axis) const noexcep
   return {};
 }
 
-void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec,
-                        const Measure& measure) noexcept {
+void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec) noexcept {
   bank.spec = &spec;
   bank.frozen = false;
   bank.reported = false;
@@ -128,7 +129,7 @@ void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& s
   set.task_count = spec.tasks.count;
   set.axis_count = 0;
   for (int k = 0; k < spec.tasks.count; ++k) {
-    fill_task(bank, set, behavior_.tasks[at(spec.tasks.first + k)], k, measure);
+    fill_task(bank, set, behavior_.tasks[at(spec.tasks.first + k)], k);
   }
   set.internal_count = spec.internals.count;
   for (int k = 0; k < spec.internals.count; ++k) {
@@ -138,8 +139,8 @@ void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& s
   }
 }
 
-void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index,
-                             const Measure& measure) noexcept {
+void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec,
+                             int index) noexcept {
   bank.tasks[at(index)] = {&spec, statechart_.entry_serial(spec.reference.owner)};
   tasks::TaskCommand& command = set.tasks[at(index)];
   command = {};
@@ -160,10 +161,10 @@ void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec&
     out.axis = axis;
     out.slope = 0.0;
     out.fresh = kept.slot < 0;
-    fill_axis(bank, set, command, spec, k, kept, measure);
+    fill_axis(bank, set, command, spec, k, kept);
   }
-  for (int k = 0; k < spec.axes.count; ++k) {  // when `entry` of all axes is known
-    if (bank.axes[at(command.first_axis + k)].begins) start_axis(bank, command, spec, k, measure);
+  for (int k = 0; k < spec.axes.count; ++k) {  // when `entry` is known of all axes
+    if (bank.axes[at(command.first_axis + k)].begins) start_axis(bank, command, spec, k);
   }
 }
 
@@ -171,14 +172,14 @@ void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec&
 // task has changed; otherwise it starts from the last reference, or from the measurement.
 void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
                              const tasks::TaskCommand& command, const TaskSpec& spec, int k,
-                             const Kept& kept, const Measure& measure) noexcept {
+                             const Kept& kept) noexcept {
   const int axis = behavior_.axes[at(spec.axes.first + k)].axis;
   const int slot = command.first_axis + k;
   AxisState& state = bank.axes[at(slot)];
   state = {};
   state.begins = true;
   if (kept.slot < 0) {
-    state.motion.pos = measured(measure, spec, set, axis);
+    state.motion.pos = measured(spec, set, axis);
   } else {
     const TaskState& before = kept.bank->tasks[at(kept.task)];
     const AxisState& old = kept.bank->axes[at(kept.slot)];
@@ -197,15 +198,14 @@ void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
     // The same position relative to another origin: `frame` or the stance contacts may have
     // changed.
     if (spec.frame == tasks::Frame::stance || before.spec->frame != spec.frame) {
-      state.motion.pos +=
-          measured(measure, spec, set, axis) - measured(measure, *before.spec, *kept.set, axis);
+      state.motion.pos += measured(spec, set, axis) - measured(*before.spec, *kept.set, axis);
     }
   }
   bank.entry[at(slot)] = state.motion.pos;
 }
 
-void ControlMerge::advance(Bank& bank, tasks::ControlSet& set, const Measure& measure) noexcept {
-  for (int k = 0; k < bank.task_count; ++k) advance_task(bank, set, k, measure);
+void ControlMerge::advance(Bank& bank, tasks::ControlSet& set) noexcept {
+  for (int k = 0; k < bank.task_count; ++k) advance_task(bank, set, k);
   const ControlSpec& spec = *bank.spec;
   for (int k = 0; k < spec.internals.count; ++k) {
     const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
@@ -217,8 +217,7 @@ void ControlMerge::advance(Bank& bank, tasks::ControlSet& set, const Measure& me
   }
 }
 
-void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index,
-                                const Measure& measure) noexcept {
+void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index) noexcept {
   const TaskSpec& spec = *bank.tasks[at(index)].spec;
   const tasks::TaskCommand& command = set.tasks[at(index)];
   const double* entry = &bank.entry[at(command.first_axis)];
@@ -238,7 +237,7 @@ void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index,
     out.integral_limit = axis.integral_limit < 0
                              ? usual.integral_limit
                              : value_or(axis.integral_limit, out.integral_limit, bank, entry);
-    advance_axis(bank, command, spec, k, measure, out);
+    advance_axis(bank, command, spec, k, out);
   }
 }
 

@@ -21,10 +21,11 @@ struct TakeOverMap;
 
 class ControlMerge {
  public:
-  ControlMerge(const Behavior& behavior, Statechart& statechart);
+  // model: what tasks measure; nullptr: every task measures 0.
+  ControlMerge(const Behavior& behavior, Statechart& statechart, const model::ControlModel* model);
 
-  // Call after the statechart's tick; `moved`: a transition was taken (or this is the first tick).
-  void update(const Measure& measure, bool moved) noexcept;
+  // After the statechart's tick; `moved`: a transition was taken (or this is the first tick).
+  void update(bool moved) noexcept;
   const tasks::ActiveControl& control() const noexcept { return control_; }
   // Bumpless transfer from the control of another behavior (control_take_over.cc), after that of
   // the statechart. same_configuration: the configuration is unchanged; otherwise active references
@@ -73,35 +74,35 @@ class ControlMerge {
   // Whether this tick's transitions may have changed the merged control; otherwise rebuild() is
   // skipped.
   bool changed() const noexcept;
-  void rebuild(const Measure& measure) noexcept;
-  // Whether the current contact transition is still the required one.
+  void rebuild() noexcept;
+  // The contact transition under way is still the one that is asked for.
   bool transition_goes_on(const ControlSpec& spec) const noexcept;
   const TaskSpec* successor(const TaskSpec& old, const ControlSpec& spec,
                             const TakeOverMap& map) const noexcept;
   bool take_bank(Bank& bank, tasks::ControlSet& set, const ControlMerge& from, const Bank& old,
                  const ControlSpec& spec, const TakeOverMap& map) noexcept;
-  void update_transition(const ControlSpec& spec, const Measure& measure) noexcept;
-  void begin_transition(const TransitionSpec& transition, const Measure& measure) noexcept;
-  void fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec,
-            const Measure& measure) noexcept;
-  void fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index,
-                 const Measure& measure) noexcept;
+  void update_transition(const ControlSpec& spec) noexcept;
+  void begin_transition(const TransitionSpec& transition) noexcept;
+  void fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec) noexcept;
+  void fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index) noexcept;
   void fill_axis(Bank& bank, const tasks::ControlSet& set, const tasks::TaskCommand& command,
-                 const TaskSpec& spec, int k, const Kept& kept, const Measure& measure) noexcept;
+                 const TaskSpec& spec, int k, const Kept& kept) noexcept;
   Kept find_kept(int instance, int axis) const noexcept;
-  void advance(Bank& bank, tasks::ControlSet& set, const Measure& measure) noexcept;
-  void advance_task(Bank& bank, tasks::ControlSet& set, int index, const Measure& measure) noexcept;
-  // References (reference.cc). `k`: index of the task's axis.
-  double measured(const Measure& measure, const TaskSpec& spec, const tasks::ControlSet& set,
-                  int axis) const noexcept;
-  void start_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
-                  const Measure& measure) noexcept;
+  void advance(Bank& bank, tasks::ControlSet& set) noexcept;
+  void advance_task(Bank& bank, tasks::ControlSet& set, int index) noexcept;
+  // References (reference.cc). `k`: which axis of the task. Position (m or rad) of one axis of a
+  // task type, in the world; velocity (m/s): of those that are positions.
+  double position(tasks::TaskType type, int point, int axis) const noexcept;
+  double velocity(tasks::TaskType type, int point, int axis) const noexcept;
+  double measured(const TaskSpec& spec, const tasks::ControlSet& set, int axis) const noexcept;
+  void start_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec,
+                  int k) noexcept;
   void start_waypoints(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
                        double over) noexcept;
   void advance_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
-                    const Measure& measure, tasks::AxisCommand& out) noexcept;
+                    tasks::AxisCommand& out) noexcept;
   Motion sample_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec, int k,
-                     const Measure& measure, tasks::AxisCommand& out) noexcept;
+                     tasks::AxisCommand& out) noexcept;
   double checked_gain(const AxisSpec& axis, int slot, std::size_t gain, double before, Bank& bank,
                       const double* entry) noexcept;
   void retarget(Bank& bank, const TaskSpec& spec, const tasks::TaskCommand& command) noexcept;
@@ -110,6 +111,7 @@ class ControlMerge {
 
   const Behavior& behavior_;
   Statechart& statechart_;
+  const model::ControlModel* model_;
   std::unique_ptr<Bank> primary_, other_, old_primary_, old_other_;
   std::unique_ptr<tasks::ControlSet> old_set_, old_other_set_;
   tasks::ActiveControl control_;

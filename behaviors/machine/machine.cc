@@ -15,16 +15,17 @@ constexpr int kOutsideCapacity = 128;
 }  // namespace
 
 struct Machine::Impl {
-  Impl(const Behavior& b, core::SignalTable& s)
+  Impl(const Behavior& b, core::SignalTable& s, const model::ControlModel* model)
       : behavior(b),
         signals(s),
         values(b.values),
         known_values(b.values),
         statechart(b, s.values(), values),
-        control(b, statechart),
+        control(b, statechart, model),
         planners(b, statechart, s, values),
         outside(kOutsideCapacity) {
     fault_events.reserve(2 * core::kFaultCount);
+    lost.reserve(kOutsideCapacity);
   }
 
   void raise_events() noexcept;
@@ -39,35 +40,40 @@ struct Machine::Impl {
   ControlMerge control;
   PlannerCalls planners;
   EventQueue outside;
+  std::vector<int> lost;  // outside events of this tick that found the queue full
   std::vector<int> fault_events;
   std::array<bool, core::kMaxContacts> contact{};
   bool started = false;
   double steps = 0.0;
 };
 
-Machine::Machine(const Behavior& behavior, core::SignalTable& signals)
-    : impl_(std::make_unique<Impl>(behavior, signals)) {}
+Machine::Machine(const Behavior& behavior, core::SignalTable& signals,
+                 const model::ControlModel* model)
+    : impl_(std::make_unique<Impl>(behavior, signals, model)) {}
 Machine::~Machine() = default;
 
 void Machine::set_surface(const model::HeightSurface& surface) {
   impl_->control.set_surface(surface);
 }
 
-void Machine::start(const Measure&) noexcept {
+void Machine::start() noexcept {
   impl_->raise_contacts(false);
   impl_->planners.start();
   impl_->statechart.start(0);
   impl_->started = true;
 }
 
-void Machine::tick(std::int64_t tick, const Measure& measure) noexcept {
+void Machine::tick(std::int64_t tick) noexcept {
   Impl& m = *impl_;
   m.statechart.begin_tick(tick);
   m.raise_events();
+  m.lost.clear();
   m.statechart.run();
   m.planners.update();
   if (m.behavior.has_robot) {
-    m.control.update(measure, m.started || !m.statechart.transitions_taken().empty());
+    m.control.update(m.started || !m.statechart.transitions_taken().empty());
+    const tasks::ControlSet& set = m.control.control().primary;
+    m.planners.observe({set.contacts.data(), at(set.contact_count)});
   }
   m.started = false;
   for (const int mark : m.statechart.marks()) m.steps += mark == m.behavior.step ? 1.0 : 0.0;
@@ -135,18 +141,16 @@ void Machine::Impl::raise_parameters() noexcept {
 }
 
 const tasks::ActiveControl& Machine::control() const noexcept { return impl_->control.control(); }
+int Machine::control_spec() const noexcept { return impl_->statechart.control(); }
+bool Machine::stepping() const noexcept { return impl_->steps > 0.0; }
 bool Machine::finished() const noexcept { return impl_->statechart.finished(); }
 
 bool Machine::raise(int event) noexcept {
   if (event < 0) return true;  // no transition listens to it
   if (impl_->outside.push(event)) return true;
+  if (impl_->lost.size() == impl_->lost.capacity()) return false;  // counted often enough
+  impl_->lost.push_back(event);
   impl_->statechart.count_fault(core::Fault::event_overflow);
-  const int overflow = impl_->behavior.event_overflow;
-  auto& faults = impl_->fault_events;
-  if (std::find(faults.begin(), faults.end(), overflow) == faults.end() &&
-      faults.size() < faults.capacity()) {
-    faults.push_back(overflow);
-  }
   return false;
 }
 
@@ -155,12 +159,16 @@ void Machine::copy_outside_events(std::vector<int>& events) const noexcept {
   for (int i = 0; i < queue.size() && events.size() < events.capacity(); ++i) {
     events.push_back(queue.at(i));
   }
+  for (const int event : impl_->lost) {
+    if (events.size() < events.capacity()) events.push_back(event);
+  }
 }
 
 void Machine::raise_fault(core::Fault fault, core::Reaction reaction) noexcept {
   const int event = impl_->behavior.fault_events[at(static_cast<int>(fault))];
   auto& faults = impl_->fault_events;
-  if (faults.size() < faults.capacity()) faults.push_back(event);
+  const bool waits = std::find(faults.begin(), faults.end(), event) != faults.end();
+  if (!waits && faults.size() < faults.capacity()) faults.push_back(event);
   if (reaction == core::Reaction::safe_state) enter_safe();
 }
 

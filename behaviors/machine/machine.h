@@ -15,24 +15,13 @@
 #include "behaviors/statechart/statechart.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
+#include "model/control_model.h"
 #include "model/height_surface.h"
 #include "tasks/active_set.h"
 
 namespace footfall::behaviors {
 
 struct TakeOverMap;
-
-// Access to the current measurements of tasks (references start from the measurement).
-class Measure {
- public:
-  virtual ~Measure() = default;
-  // Position of one axis of a task type (m or rad); point: index into the model's points.
-  virtual double position(tasks::TaskType type, int point, int axis) const noexcept = 0;
-  // Velocity of the same axis, for positions (com_position, point_position, frame_pose's x y z).
-  virtual double velocity(tasks::TaskType, int /*point*/, int /*axis*/) const noexcept {
-    return 0.0;
-  }
-};
 
 // A request by an `invoke` in this tick.
 struct PlanRequest {
@@ -41,6 +30,7 @@ struct PlanRequest {
   int stance = -1;             // contact indices
   int swing = -1;
   double switch_in = 0.0;  // s until the support changes, counted from now
+  FootPlannerInput input;  // of the tick that asks
 };
 
 // A planner's answer.
@@ -56,19 +46,21 @@ struct PlanAnswer {
 
 class Machine {
  public:
-  // `signals` is the run's table (values are read each tick and planner rows written), with the
-  // layout behavior.layout. Both must outlive the machine.
-  Machine(const Behavior& behavior, core::SignalTable& signals);
+  // `signals` is the run's table (values are read each tick and planner rows written), laid out by
+  // behavior.layout. `model`, updated before each tick, gives what tasks measure, where references
+  // start; nullptr: no robot, every task measures 0. All must outlive the machine.
+  Machine(const Behavior& behavior, core::SignalTable& signals,
+          const model::ControlModel* model = nullptr);
   ~Machine();
 
   // The world's walking surface, flat by default; set before start().
   void set_surface(const model::HeightSurface& surface);
 
   // Enters the initial configuration at tick 0; signals hold the first measurement.
-  void start(const Measure& measure) noexcept;
-  // One macro step (docs/behaviors.md 8.3), then the references of the active control. `tick`
-  // counts control periods since start (skipped ones included).
-  void tick(std::int64_t tick, const Measure& measure) noexcept;
+  void start() noexcept;
+  // One macro step (docs/behaviors.md 8.3), then references of the active control.
+  // `tick` counts control periods since start (skipped ones included).
+  void tick(std::int64_t tick) noexcept;
 
   // Bumpless transfer from the machine of another behavior, between two ticks and instead of
   // start(): continues with its configuration and clocks (Statechart::take_over), references,
@@ -79,7 +71,9 @@ class Machine {
   bool has_configuration_of(const Machine& old, const TakeOverMap& map) const noexcept;
 
   const tasks::ActiveControl& control() const noexcept;
-  bool finished() const noexcept;  // a final child of the root was entered
+  int control_spec() const noexcept;  // of its primary law: index into Behavior::controls
+  bool stepping() const noexcept;     // the behavior has marked a step
+  bool finished() const noexcept;     // a final child of the root was entered
 
   // Raises an external event by id (Behavior::find_event); false: the queue is full (counted,
   // raised).

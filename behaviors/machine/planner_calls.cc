@@ -22,6 +22,14 @@ FootPlannerSpec spec_in_force(const PlannerInfo& planner,
   return spec;
 }
 
+PlanAnswer answer_of(const Behavior& behavior, const PlanRequest& request,
+                     std::span<const double> parameters) noexcept {
+  const PlannerInfo& planner = behavior.planners[at(request.planner)];
+  const FootPlan plan = plan_foot(spec_in_force(planner, parameters), request.input);
+  return {request.planner,    request.sequence,   plan.ok,       plan.target,
+          plan.predicted_pos, plan.predicted_vel, plan.extension};
+}
+
 PlannerCalls::PlannerCalls(const Behavior& behavior, Statechart& statechart,
                            core::SignalTable& signals, std::span<const double> parameters)
     : behavior_(behavior),
@@ -37,11 +45,59 @@ PlannerCalls::PlannerCalls(const Behavior& behavior, Statechart& statechart,
 
 void PlannerCalls::start() noexcept {
   if (behavior_.planners.empty()) return;
-  const double yaw = signals_[behavior_.layout.base_rpy + 2];
+  const auto rpy = signal3(behavior_.layout.base_rpy);
+  const auto base = signal3(behavior_.layout.base_pos);
+  const double sr = std::sin(rpy[0]), cr = std::cos(rpy[0]);
+  const double sp = std::sin(rpy[1]), cp = std::cos(rpy[1]);
+  const double sy = std::sin(rpy[2]), cy = std::cos(rpy[2]);
+  const std::array<double, 3> left = {cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr};
   for (std::size_t c = 0; c < behavior_.robot.contacts.size(); ++c) {
-    const int point = behavior_.layout.point[c];
-    lateral_[c] = -std::sin(yaw) * signals_[point] + std::cos(yaw) * signals_[point + 1];
+    const auto p = signal3(behavior_.layout.point[c]);
+    double y = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) y += left[k] * (p[k] - base[k]);
+    side_[c] = y >= 0.0 ? 1.0 : -1.0;
   }
+}
+
+std::array<double, 3> PlannerCalls::signal3(int first) const noexcept {
+  return {signals_[first], signals_[first + 1], signals_[first + 2]};
+}
+
+std::array<double, 2> PlannerCalls::wanted_goal(const PlannerInfo& planner) const noexcept {
+  if (planner.goal_slot >= 0) {
+    return {parameters_[at(planner.goal_slot)], parameters_[at(planner.goal_slot + 1)]};
+  }
+  if (planner.goal.size() >= 2) return {planner.goal[0], planner.goal[1]};
+  return {};
+}
+
+void PlannerCalls::observe(std::span<const int> stance_contacts) noexcept {
+  if (behavior_.planners.empty()) return;
+  PendulumMeasurement measured;
+  measured.com = signal3(behavior_.layout.com_pos);
+  measured.com_vel = signal3(behavior_.layout.com_vel);
+  measured.supported = !stance_contacts.empty();
+  for (const int c : stance_contacts) {
+    const auto p = signal3(behavior_.layout.point[at(c)]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      measured.support[k] += p[k] / static_cast<double>(stance_contacts.size());
+    }
+  }
+  for (std::size_t i = 0; i < behavior_.planners.size(); ++i) {
+    const PlannerInfo& planner = behavior_.planners[i];
+    behaviors::observe(seen_[i], planner.spec, measured, wanted_goal(planner),
+                       statechart_.context().period);
+  }
+  for (PlanRequest& request : requests_) {
+    request.input = input_of(request.planner, request.stance, request.swing, request.switch_in);
+  }
+}
+
+FootPlannerInput PlannerCalls::input_of(int planner, int stance, int swing,
+                                        double switch_in) const noexcept {
+  const SignalLayout& layout = behavior_.layout;
+  return make_input(seen_[at(planner)], signal3(layout.com_pos), signal3(layout.point[at(stance)]),
+                    signals_[layout.base_rpy + 2], side_[at(swing)], switch_in);
 }
 
 void PlannerCalls::take_over(const PlannerCalls& old, const TakeOverMap& map) noexcept {
@@ -62,8 +118,17 @@ void PlannerCalls::take_over(const PlannerCalls& old, const TakeOverMap& map) no
   for (const int event : old.events_) {
     if (map.events[at(event)] >= 0) emit(map.events[at(event)]);
   }
-  lateral_ = old.lateral_;
   sequence_ = old.sequence_;
+  side_ = old.side_;
+  if (behavior_.planners.empty()) return;
+  PlannerObservation fresh;  // of a planner that was not there: from the last tick's measurement
+  fresh.velocity = {signals_[behavior_.layout.com_vel], signals_[behavior_.layout.com_vel + 1]};
+  fresh.goal = {signals_[behavior_.layout.com_pos], signals_[behavior_.layout.com_pos + 1]};
+  fresh.primed = true;
+  seen_.fill(fresh);
+  for (std::size_t i = 0; i < map.planners.size(); ++i) {
+    if (map.planners[i] >= 0) seen_[at(map.planners[i])] = old.seen_[i];
+  }
 }
 
 void PlannerCalls::update() noexcept {
@@ -119,7 +184,8 @@ void PlannerCalls::ask(const InvokeInfo& invoke, Call& call) noexcept {
   request.sequence = ++sequence_;
   request.deadline = deadline < 0 ? -1 : context.tick + deadline;
   request.switch_time = static_cast<double>(context.tick) * context.period + switch_in;
-  requests_.push_back({invoke.planner, request.sequence, invoke.stance, invoke.swing, switch_in});
+  requests_.push_back(
+      {invoke.planner, request.sequence, invoke.stance, invoke.swing, switch_in, {}});
 }
 
 bool PlannerCalls::deliver(const PlanAnswer& answer) noexcept {
@@ -148,30 +214,19 @@ void PlannerCalls::replace_late(const InvokeInfo& invoke, const Outstanding& req
   emit(planner.late_event);
   signals_[behavior_.layout.planner[at(invoke.planner)].late] = 1.0;
   if (!invoke.closed_form) return;
-  const SignalLayout& layout = behavior_.layout;
   const EvaluationContext& context = statechart_.context();
-  const int stance = layout.point[at(invoke.stance)];
-  FootPlannerInput input;
-  input.com = {signals_[layout.com_pos], signals_[layout.com_pos + 1]};
-  input.com_vel = {signals_[layout.com_vel], signals_[layout.com_vel + 1]};
-  input.com_height = signals_[layout.com_pos + 2] - signals_[stance + 2];
-  input.stance = {signals_[stance], signals_[stance + 1], signals_[stance + 2]};
-  input.yaw = signals_[layout.base_rpy + 2];
-  const double* goal =
-      planner.goal_slot >= 0 ? &parameters_[at(planner.goal_slot)] : planner.goal.data();
-  input.goal = {goal[0], goal[1]};
-  input.switch_in =
+  const double switch_in =
       std::max(0.0, request.switch_time - static_cast<double>(context.tick) * context.period);
-  input.swing_side = lateral_[at(invoke.swing)] < lateral_[at(invoke.stance)] ? -1.0 : 1.0;
-  const FootPlan plan = plan_foot(spec_in_force(planner, parameters_), input);
-  if (!plan.ok) {
+  const PlanAnswer answer =
+      answer_of(behavior_,
+                {invoke.planner, request.sequence, invoke.stance, invoke.swing, switch_in,
+                 input_of(invoke.planner, invoke.stance, invoke.swing, switch_in)},
+                parameters_);
+  if (answer.ok) {
+    write(invoke.planner, answer, request.switch_time, true);
+  } else {
     emit(planner.failed_event);
-    return;
   }
-  write(invoke.planner,
-        {invoke.planner, request.sequence, true, plan.target, plan.predicted_pos,
-         plan.predicted_vel, plan.extension},
-        request.switch_time, true);
 }
 
 void PlannerCalls::write(int planner, const PlanAnswer& answer, double switch_time,

@@ -9,6 +9,7 @@
 
 #include "behaviors/compiled/behavior.h"
 #include "behaviors/machine/machine.h"
+#include "behaviors/planners/observation.h"
 #include "behaviors/statechart/statechart.h"
 
 namespace footfall::behaviors {
@@ -19,6 +20,10 @@ struct TakeOverMap;
 FootPlannerSpec spec_in_force(const PlannerInfo& planner,
                               std::span<const double> parameters) noexcept;
 
+// The plan of the closed form for a request's input.
+PlanAnswer answer_of(const Behavior& behavior, const PlanRequest& request,
+                     std::span<const double> parameters) noexcept;
+
 class PlannerCalls {
  public:
   PlannerCalls(const Behavior& behavior, Statechart& statechart, core::SignalTable& signals,
@@ -28,7 +33,9 @@ class PlannerCalls {
   void start() noexcept;
   // Call after the statechart's tick: handles exits, deadlines and new requests.
   void update() noexcept;
-  // Writes the answer's signals; false if it was cancelled, is late, or was never requested.
+  // At the end of every tick: what the planners see, and the input of this tick's requests.
+  void observe(std::span<const int> stance_contacts) noexcept;
+  // Writes the answer's signals; false: it was cancelled, late, or never asked for.
   bool deliver(const PlanAnswer& answer) noexcept;
 
   // Continues the calls of another behavior; its pending requests are not awaited.
@@ -67,6 +74,9 @@ class PlannerCalls {
   void leave(const InvokeInfo& invoke, Call& call) noexcept;
   void ask(const InvokeInfo& invoke, Call& call) noexcept;
   void replace_late(const InvokeInfo& invoke, const Outstanding& request) noexcept;
+  FootPlannerInput input_of(int planner, int stance, int swing, double switch_in) const noexcept;
+  std::array<double, 2> wanted_goal(const PlannerInfo& planner) const noexcept;
+  std::array<double, 3> signal3(int first) const noexcept;
   void write(int planner, const PlanAnswer& answer, double switch_time, bool late) noexcept;
   void emit(int event) noexcept;
   // A time in ticks; -1 and error.execution if it is invalid.
@@ -79,8 +89,8 @@ class PlannerCalls {
   std::vector<Call> calls_;  // by Behavior::invokes
   std::vector<PlanRequest> requests_;
   std::vector<int> events_;
-  std::array<double, core::kMaxContacts>
-      lateral_{};  // m, lateral position of each contact at the start, positive left
+  std::array<PlannerObservation, core::kMaxPlanners> seen_{};  // by Behavior::planners
+  std::array<double, core::kMaxContacts> side_{};              // +1 left, -1 right of the base
   std::uint32_t sequence_ = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include "behaviors/machine/control_merge.h"
 #include "core/index.h"
+#include "tasks/task_law.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -21,22 +22,29 @@ double quarter(const Behavior& behavior, const TaskSpec& spec, int k) noexcept {
 
 }  // namespace
 
-// The measured value in the task's frame: relative to the mean of the stance contacts, or along the
-// heading's axes.
-double ControlMerge::measured(const Measure& measure, const TaskSpec& spec,
-                              const tasks::ControlSet& set, int axis) const noexcept {
-  const double world = measure.position(spec.type, spec.point, axis);
+double ControlMerge::position(tasks::TaskType type, int point, int axis) const noexcept {
+  return model_ == nullptr ? 0.0 : tasks::measured_position(*model_, type, point, axis);
+}
+
+double ControlMerge::velocity(tasks::TaskType type, int point, int axis) const noexcept {
+  return model_ == nullptr ? 0.0 : tasks::measured_velocity(*model_, type, point, axis);
+}
+
+// In the task's frame: from the mean of the stance contacts, or on the heading's axes.
+double ControlMerge::measured(const TaskSpec& spec, const tasks::ControlSet& set,
+                              int axis) const noexcept {
+  const double world = position(spec.type, spec.point, axis);
   if (spec.frame == tasks::Frame::stance && axis < 3) {
     double origin = 0.0;
     for (int c = 0; c < set.contact_count; ++c) {
-      origin += measure.position(tasks::TaskType::point_position, set.contacts[at(c)], axis) /
-                set.contact_count;
+      origin +=
+          position(tasks::TaskType::point_position, set.contacts[at(c)], axis) / set.contact_count;
     }
     return world - origin;
   }
   if (tasks::info(spec.type).is_rate && axis < 2 && spec.frame == tasks::Frame::heading) {
-    const double yaw = measure.position(tasks::TaskType::body_orientation, -1, 2);
-    const double x = measure.position(spec.type, -1, 0), y = measure.position(spec.type, -1, 1);
+    const double yaw = position(tasks::TaskType::body_orientation, -1, 2);
+    const double x = position(spec.type, -1, 0), y = position(spec.type, -1, 1);
     return axis == 0 ? std::cos(yaw) * x + std::sin(yaw) * y
                      : std::cos(yaw) * y - std::sin(yaw) * x;
   }
@@ -46,7 +54,7 @@ double ControlMerge::measured(const Measure& measure, const TaskSpec& spec,
 // `over`, `at` and `to` are read here, at entry; with a non-finite value the axis keeps its
 // position.
 void ControlMerge::start_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec,
-                              int k, const Measure& measure) noexcept {
+                              int k) noexcept {
   if (spec.reference.kind != ReferenceSpec::Kind::trajectory) return;
   const ReferenceSpec& reference = spec.reference;
   const EvaluationContext& context = statechart_.context();
@@ -76,8 +84,8 @@ void ControlMerge::start_axis(Bank& bank, const tasks::TaskCommand& command, con
       break;
     }
     case Shape::surface: {
-      const double speed = measure.velocity(spec.type, spec.point, 0);
-      const auto ground = surface_.at(measure.position(spec.type, spec.point, 0));
+      const double speed = velocity(spec.type, spec.point, 0);
+      const auto ground = surface_.at(position(spec.type, spec.point, 0));
       start.pos -= ground.height;
       start.vel -= ground.slope * speed;
       start.acc -= ground.curvature * speed * speed;
@@ -125,7 +133,7 @@ void ControlMerge::start_waypoints(Bank& bank, const tasks::TaskCommand& command
 }
 
 void ControlMerge::advance_axis(Bank& bank, const tasks::TaskCommand& command, const TaskSpec& spec,
-                                int k, const Measure& measure, tasks::AxisCommand& out) noexcept {
+                                int k, tasks::AxisCommand& out) noexcept {
   const AxisSpec& axis = behavior_.axes[at(spec.axes.first + k)];
   AxisState& state = bank.axes[at(command.first_axis + k)];
   switch (spec.reference.kind) {
@@ -139,20 +147,19 @@ void ControlMerge::advance_axis(Bank& bank, const tasks::TaskCommand& command, c
       }
       break;
     case ReferenceSpec::Kind::trajectory:
-      if (!bank.frozen) state.motion = sample_axis(bank, command, spec, k, measure, out);
+      if (!bank.frozen) state.motion = sample_axis(bank, command, spec, k, out);
       break;
   }
   out.ref = state.motion.pos;
   out.ref_vel = state.motion.vel;
   out.ref_acc = state.motion.acc;
-  if (out.slope != 0.0) {  // axis is p - slope x: do not command the part of x twice
-    out.ref_vel -= out.slope * measure.velocity(spec.type, spec.point, 0);
+  if (out.slope != 0.0) {  // of p - slope x: what x brings is not to be asked for twice
+    out.ref_vel -= out.slope * velocity(spec.type, spec.point, 0);
   }
 }
 
 Motion ControlMerge::sample_axis(Bank& bank, const tasks::TaskCommand& command,
-                                 const TaskSpec& spec, int k, const Measure& measure,
-                                 tasks::AxisCommand& out) noexcept {
+                                 const TaskSpec& spec, int k, tasks::AxisCommand& out) noexcept {
   const EvaluationContext& context = statechart_.context();
   const double* entry = &bank.entry[at(command.first_axis)];
   const AxisSpec& axis = behavior_.axes[at(spec.axes.first + k)];
@@ -176,9 +183,9 @@ Motion ControlMerge::sample_axis(Bank& bank, const tasks::TaskCommand& command,
     motion = {motion.pos + turn.pos, motion.vel + turn.vel, motion.acc + turn.acc};
   }
   if (spec.reference.shape == Shape::surface) {
-    // Chain rule; the term f' ẍ is part of the row itself, which is that of z - f' x.
-    const double speed = measure.velocity(spec.type, spec.point, 0);
-    const auto ground = surface_.at(measure.position(spec.type, spec.point, 0));
+    // Chain rule; what f' ẍ would add is in the row itself, which is that of z - f' x.
+    const double speed = velocity(spec.type, spec.point, 0);
+    const auto ground = surface_.at(position(spec.type, spec.point, 0));
     out.slope = ground.slope;
     motion.pos += ground.height;
     motion.vel += ground.slope * speed;

@@ -78,24 +78,18 @@ void Statechart::begin_tick(std::int64_t tick) noexcept {
   taken_.clear();
   events_.clear();
   steps_ = 0;
-  if (overflowed_) {
-    overflowed_ = false;
-    if (chart_.event_overflow >= 0) external_.push(chart_.event_overflow);
-  }
 }
 
 bool Statechart::raise(int event) noexcept {
   if (event < 0 || finished_) return true;  // no transition listens to it
   if (external_.push(event)) return true;
   faults_.add(core::Fault::event_overflow);
-  overflowed_ = true;
   return false;
 }
 
 void Statechart::raise_internal(int event) noexcept {
   if (event < 0 || internal_.push(event)) return;
   faults_.add(core::Fault::event_overflow);
-  overflowed_ = true;
 }
 
 void Statechart::execution_error() noexcept {

@@ -172,8 +172,7 @@ class Statechart {
   int steps_ = 0;  // micro steps in this tick
   bool finished_ = false;
   bool safe_requested_ = false;
-  bool overflowed_ = false;
-  bool recorded_start_ = false;  // marks of start() must still be reported
+  bool recorded_start_ = false;  // start()'s marks are still to be shown
 };
 
 }  // namespace footfall::behaviors

@@ -29,7 +29,6 @@ void Statechart::take_over(const Statechart& old, const TakeOverMap& map) noexce
   faults_ = old.faults_;
   finished_ = false;
   safe_requested_ = old.safe_requested_;
-  overflowed_ = old.overflowed_;
   recorded_start_ = false;
   steps_ = 0;
   for (auto* list : {&marks_, &taken_, &events_}) list->clear();

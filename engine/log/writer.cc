@@ -243,8 +243,9 @@ void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
     std::ranges::for_each(plan.predicted_vel, put);
     put(plan.extension);
   }
-  if (trace.writes.empty() && trace.events.empty() && !trace.limit_steps) return;
-  constexpr std::size_t kWrites = 256;  // per message
+  const bool flags = trace.limit_steps || trace.late || trace.requests_lost;
+  if (trace.writes.empty() && trace.events.empty() && !flags) return;
+  constexpr std::size_t kWrites = 256;  // of one message
   for (std::size_t from = 0; from == 0 || from < trace.writes.size(); from += kWrites) {
     const std::size_t count = std::min(kWrites, trace.writes.size() - from);
     std::uint8_t* to = m.message(kLongestMessage);
@@ -261,6 +262,8 @@ void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
     if (from == 0) {
       for (const int event : trace.events) proto.number(4, static_cast<unsigned>(event));
       if (trace.limit_steps) proto.number(5, 1);
+      if (trace.late) proto.number(6, 1);
+      if (trace.requests_lost) proto.number(7, 1);
     }
     m.finish_message(LogChannel::edits, tick, proto.end());
   }

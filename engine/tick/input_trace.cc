@@ -22,7 +22,7 @@ void InputTrace::clear() noexcept {
   events.clear();
   plans.clear();
   planned.clear();
-  limit_steps = false;
+  limit_steps = late = requests_lost = false;
 }
 
 void WriteWatch::find(std::span<const double> parameters,

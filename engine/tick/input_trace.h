@@ -1,6 +1,6 @@
 // What reaches a tick from outside besides the sensors: parameters written and whether that limits
-// the torque's steps, events raised, planners' answers. A trace records it for the log; replay puts
-// it back at the same place in the tick.
+// the torque's steps, events raised, planners' answers, whether it began late. A trace records it
+// for the log; replay puts it back at the same place in the tick.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,8 @@ struct InputTrace {
   std::vector<int> events;                   // raised from outside, in order
   std::vector<behaviors::PlanAnswer> plans;  // handed to the machine in this tick
   bool limit_steps = false;                  // torque steps are limited in this tick
+  bool late = false;                         // the tick began late
+  bool requests_lost = false;                // of scripts, whose queue was full
   // Of a replay:
   std::vector<behaviors::PlanAnswer> planned;  // what the planners themselves gave
   std::function<void()> inspect;               // called just before the machine's tick, if there
@@ -25,7 +27,8 @@ struct InputTrace {
   void size_for(const behaviors::Behavior& behavior);
   void clear() noexcept;
   bool empty() const noexcept {
-    return writes.empty() && events.empty() && plans.empty() && !limit_steps;
+    return writes.empty() && events.empty() && plans.empty() && !limit_steps && !late &&
+           !requests_lost;
   }
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tasks/solver/wbosc.h"
+
 namespace footfall::engine {
 
 using core::Fault;
@@ -42,9 +44,22 @@ FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors
 
 SafetyFilter::SafetyFilter(const model::RobotDescription& robot) : robot_(robot) {}
 
-SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
-                                         const model::ControlModel& model) noexcept {
-  SafetyFindings findings;
+void SafetyFilter::check_swings(const hal::Sensors& sensors, bool stepping,
+                                FaultFindings& findings) noexcept {
+  for (std::size_t c = 0; c < robot_.contacts.size(); ++c) {
+    air_ticks_[c] = sensors.contact[c] ? 0 : air_ticks_[c] + 1;
+    const double time = static_cast<double>(air_ticks_[c]) * robot_.period_s();
+    if (!stepping || time <= robot_.swing_limit) continue;
+    findings.add(Fault::swing_too_long, {static_cast<int>(c), time, time - robot_.swing_limit});
+  }
+}
+
+FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, const TickStart& tick,
+                                        const model::ControlModel& model) noexcept {
+  FaultFindings findings;
+  if (!tick.fresh) findings.add(Fault::sensor_stale);
+  if (!tick.estimated) findings.add(Fault::no_estimate);
+  check_swings(sensors, tick.stepping, findings);
   if (sensors.backend_fault) findings.add(Fault::simulator_warning);
   if (!sensors.imu_fresh) findings.add(Fault::imu_stale);
   if (!sensors.mocap_fresh) findings.add(Fault::mocap_stale);
@@ -71,26 +86,25 @@ SafetyFindings SafetyFilter::check_state(const hal::Sensors& sensors,
   return findings;
 }
 
-SafetyFindings SafetyFilter::filter(hal::Commands& commands, bool limit_steps) noexcept {
-  SafetyFindings findings;
+FaultFindings SafetyFilter::filter(hal::Commands& commands, bool limit_steps) noexcept {
+  FaultFindings findings;
   torque_step_ = 0.0;
   held_back_ = false;
-  const double bound = limit_steps && have_previous_ ? robot_.torque_step_limit : 0.0;
+  bool finite = true;
+  for (std::size_t j = 0; j < robot_.joints.size(); ++j) finite &= std::isfinite(commands.tau[j]);
+  if (!finite) findings.add(Fault::non_finite);
+  // What is not finite is let go at once.
+  const bool bounded = limit_steps && have_previous_ && finite && robot_.torque_step_limit > 0.0;
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     double& tau = commands.tau[j];
-    const bool finite = std::isfinite(tau);
-    if (!finite) {
-      tau = 0.0;
-      findings.add(Fault::non_finite);
-    }
+    if (!finite) tau = 0.0;
     const double limit = robot_.joints[j].torque_limit;
     if (limit > 0.0 && std::abs(tau) >= limit) {
       findings.add(Fault::torque_limit, {static_cast<int>(j), tau, std::abs(tau) - limit});
-      tau = std::clamp(tau, -limit, limit);
+      tau = tasks::within_limit(tau, limit);
     }
-    // What is not finite is let go at once.
-    if (bound > 0.0 && finite && std::abs(tau - previous_[j]) > bound) {
-      tau = limited_step(previous_[j], tau, bound);
+    if (bounded && std::abs(tau - previous_[j]) > robot_.torque_step_limit) {
+      tau = limited_step(previous_[j], tau, robot_.torque_step_limit);
       held_back_ = true;
     }
     const double step = have_previous_ ? tau - previous_[j] : 0.0;

@@ -4,37 +4,12 @@
 #include <array>
 #include <vector>
 
-#include "core/fault.h"
+#include "engine/tick/faults.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "model/robot/description.h"
 
 namespace footfall::engine {
-
-// Where and how much, for faults of a joint: torque.limit (torque asked for, N m), torque.step
-// (change since the last tick, N m), joint.limit (position, rad).
-struct FaultPlace {
-  int joint = -1;  // -1: no joint's
-  double value = 0.0;
-  double excess = 0.0;  // beyond the limit; the largest is kept
-};
-
-// What the filter found in one tick, as a set of faults.
-struct SafetyFindings {
-  std::array<bool, core::kFaultCount> found{};
-  std::array<FaultPlace, core::kFaultCount> place{};
-  bool any = false;
-  void add(core::Fault fault) noexcept {
-    found[static_cast<std::size_t>(fault)] = true;
-    any = true;
-  }
-  void add(core::Fault fault, const FaultPlace& where) noexcept {
-    add(fault);
-    FaultPlace& kept = place[static_cast<std::size_t>(fault)];
-    if (kept.joint < 0 || where.excess > kept.excess) kept = where;
-  }
-  bool has(core::Fault fault) const noexcept { return found[static_cast<std::size_t>(fault)]; }
-};
 
 // The criteria of a fall that a tick can measure. Source: docs/architecture.md, how we count.
 struct FallCriteria {
@@ -46,22 +21,32 @@ struct FallCriteria {
 FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,
                         const model::ControlModel& model) noexcept;
 
+// What else a tick knows when its state is checked.
+struct TickStart {
+  bool fresh = true;      // the last read brought something new
+  bool estimated = true;  // the estimator gave a state
+  bool stepping = false;  // the behavior has marked a step: a foot in the air is a swing
+};
+
 class SafetyFilter {
  public:
   explicit SafetyFilter(const model::RobotDescription& robot);
 
   // Before control: fall (height of the base above the lowest contact point below its part of the
-  // standing height, tilt beyond the limit, another body touching), joint limits, backend faults.
-  SafetyFindings check_state(const hal::Sensors& sensors,
-                             const model::ControlModel& model) noexcept;
+  // standing height, tilt beyond the limit, another body touching), joint limits, swings,
+  // sensors, estimator and backend. Once a tick: it counts how long each foot is in the air.
+  FaultFindings check_state(const hal::Sensors& sensors, const TickStart& tick,
+                            const model::ControlModel& model) noexcept;
 
-  // After control: replaces what is not finite by 0, clamps to the limits, counts torque steps (the
-  // first tick has none). With `limit_steps` no finite command steps by more than the robot's
-  // bound, to the last bit: it follows what was asked for at that rate.
-  SafetyFindings filter(hal::Commands& commands, bool limit_steps = false) noexcept;
+  // After control: makes the torques asked for into those that are sent. If one is not finite all
+  // are 0. The others are held within the joints' limits; steps are counted (the first tick has
+  // none). With `limit_steps` no command steps by more than the robot's bound, to the last bit: it
+  // follows what was asked for at that rate.
+  FaultFindings filter(hal::Commands& commands, bool limit_steps = false) noexcept;
 
   // Goes on from the commands that another filter of the same robot let pass.
   void take_over(const SafetyFilter& old) noexcept {
+    air_ticks_ = old.air_ticks_;
     previous_ = old.previous_;
     have_previous_ = old.have_previous_;
     torque_step_ = old.torque_step_;
@@ -73,7 +58,10 @@ class SafetyFilter {
   bool held_back() const noexcept { return held_back_; }
 
  private:
+  void check_swings(const hal::Sensors& sensors, bool stepping, FaultFindings& findings) noexcept;
+
   const model::RobotDescription& robot_;
+  std::array<std::int64_t, core::kMaxContacts> air_ticks_{};  // of each foot, since its lift-off
   std::array<double, core::kMaxJoints> previous_{};
   bool have_previous_ = false;
   double torque_step_ = 0.0;

@@ -1,10 +1,13 @@
-// What a tick writes into the signal table: measured values before the machine, control after it.
+// Measured values, control and gaps; see signals.h.
+#include "engine/tick/signals.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
-#include "engine/tick/control_loop.h"
 
 namespace footfall::engine {
 namespace {
@@ -14,37 +17,84 @@ void put(core::SignalTable& table, int first, const std::array<double, N>& value
   std::copy(values.begin(), values.end(), table.values() + first);
 }
 
+// Where the signals of a task's axis are: tasks of one name list only the axes they use, by name.
+std::vector<std::vector<int>> axis_columns(const behaviors::Behavior& behavior) {
+  std::vector<std::vector<int>> columns(behavior.task_names.size());
+  for (const behaviors::TaskInstance& task : behavior.task_instances) {
+    const auto index = static_cast<std::size_t>(task.signals);
+    const std::vector<std::string>& used = behavior.task_names[index].axes;
+    columns[index].clear();
+    for (const std::string& name : tasks::axis_names(task.type, behavior.robot)) {
+      const auto found = std::find(used.begin(), used.end(), name);
+      columns[index].push_back(found == used.end() ? -1 : static_cast<int>(found - used.begin()));
+    }
+  }
+  return columns;
+}
+
+// All signals of a task or internal force, by name.
+std::vector<std::vector<int>> rows_of(const behaviors::Behavior& behavior, const std::string& kind,
+                                      const std::vector<std::string>& names) {
+  std::vector<std::vector<int>> rows;
+  for (const std::string& name : names) {
+    std::vector<int>& own = rows.emplace_back();
+    const std::string prefix = kind + "." + name + ".";
+    for (int s = 0; s < behavior.signals.size(); ++s) {
+      if (behavior.signals.info(s).name.starts_with(prefix)) own.push_back(s);
+    }
+  }
+  return rows;
+}
+
+std::vector<std::string> task_names(const behaviors::Behavior& behavior) {
+  std::vector<std::string> names;
+  for (const behaviors::TaskName& task : behavior.task_names) names.push_back(task.name);
+  return names;
+}
+
 }  // namespace
 
-void ControlLoop::write_measured_signals() noexcept {
+SignalWriter::SignalWriter(const behaviors::Behavior& behavior, core::SignalTable& signals)
+    : behavior_(behavior),
+      signals_(signals),
+      axis_column_(axis_columns(behavior)),
+      task_rows_(rows_of(behavior, "task", task_names(behavior))),
+      internal_rows_(rows_of(behavior, "internal", behavior.internal_instances)),
+      task_in_force_(task_rows_.size(), 1),
+      internal_in_force_(internal_rows_.size(), 1) {}
+
+void SignalWriter::write_measured(double time, const model::ControlModel& model,
+                                  const hal::Sensors& sensors) noexcept {
   const behaviors::SignalLayout& layout = behavior_.layout;
-  const model::State& s = model_.state();
-  signals_[layout.time] = time();
-  put(signals_, layout.com_pos, model_.com().position);
-  put(signals_, layout.com_vel, model_.com().velocity);
+  const model::State& s = model.state();
+  signals_[layout.time] = time;
+  put(signals_, layout.com_pos, model.com().position);
+  put(signals_, layout.com_vel, model.com().velocity);
   put(signals_, layout.base_pos, s.p_WB);
   put(signals_, layout.base_vel, s.v_WB);
-  put(signals_, layout.base_rpy, model_.rpy());
+  put(signals_, layout.base_rpy, model.rpy());
   put(signals_, layout.base_angvel, s.w_WB_B);
-  put(signals_, layout.centroidal_momentum, model_.centroidal_momentum());
+  put(signals_, layout.centroidal_momentum, model.centroidal_momentum());
   for (std::size_t c = 0; c < layout.contact.size(); ++c) {
-    signals_[layout.contact[c]] = sensors_.contact[c] ? 1.0 : 0.0;
-    put(signals_, layout.force[c], sensors_.force[c]);
+    signals_[layout.contact[c]] = sensors.contact[c] ? 1.0 : 0.0;
+    put(signals_, layout.force[c], sensors.force[c]);
   }
   for (std::size_t p = 0; p < layout.point.size(); ++p) {
-    put(signals_, layout.point[p], model_.point_position(static_cast<int>(p)));
+    put(signals_, layout.point[p], model.point_position(static_cast<int>(p)));
   }
   for (std::size_t j = 0; j < layout.joint.size(); ++j) {
     signals_[layout.joint[j]] = s.q[j];
     signals_[layout.joint[j] + 1] = s.qd[j];
-    signals_[layout.joint[j] + 2] = sensors_.tau[j];
+    signals_[layout.joint[j] + 2] = sensors.tau[j];
   }
 }
 
-void ControlLoop::write_control_signals() noexcept {
+void SignalWriter::write_control(const behaviors::Machine& machine,
+                                 const tasks::ControllerResult& result,
+                                 const hal::Commands& commands, double torque_step,
+                                 const core::FaultCounters& counters) noexcept {
   const behaviors::SignalLayout& layout = behavior_.layout;
-  const tasks::ActiveControl& control = machine_->control();
-  const tasks::ControllerResult& result = controller_.result();
+  const tasks::ActiveControl& control = machine.control();
   for (std::size_t c = 0; c < layout.support.size(); ++c) {
     signals_[layout.support[c]] = 0.0;
     put(signals_, layout.force_cmd[c], result.force[c]);
@@ -53,27 +103,27 @@ void ControlLoop::write_control_signals() noexcept {
     signals_[layout.support[at(control.primary.contacts[at(i)])]] = 1.0;
   }
   for (std::size_t j = 0; j < layout.joint.size(); ++j) {
-    signals_[layout.joint[j] + 3] = commands_.tau[j];
+    signals_[layout.joint[j] + 3] = commands.tau[j];
   }
-  const auto active = machine_->active_atomic();
+  const auto active = machine.active_atomic();
   signals_[layout.state] = active.empty() ? -1.0 : active.front();
   signals_[layout.transition_weight] = control.has_other ? control.other_weight : 0.0;
-  signals_[layout.torque_step] = safety_.torque_step();
+  signals_[layout.torque_step] = torque_step;
   if (!behavior_.planners.empty() && behavior_.planners.front().goal_slot >= 0) {
     const auto slot = at(behavior_.planners.front().goal_slot);
-    signals_[layout.goal] = machine_->parameters()[slot];
-    signals_[layout.goal + 1] = machine_->parameters()[slot + 1];
+    signals_[layout.goal] = machine.parameters()[slot];
+    signals_[layout.goal + 1] = machine.parameters()[slot + 1];
   }
   double faults = 0.0;
-  for (const std::int64_t n : faults_.count) faults += static_cast<double>(n);
+  for (const std::int64_t n : counters.count) faults += static_cast<double>(n);
   signals_[layout.faults] = faults;
   leave_gaps();
-  write_internal_signals();
-  write_task_signals();
+  write_internals(control.primary, result);
+  write_tasks(control.primary, result);
 }
 
 // What is not in force has no value: a gap in the log, false in a condition.
-void ControlLoop::leave_gaps() noexcept {
+void SignalWriter::leave_gaps() noexcept {
   const auto leave = [&](std::vector<unsigned char>& in_force,
                          const std::vector<std::vector<int>>& rows) {
     for (std::size_t k = 0; k < in_force.size(); ++k) {
@@ -87,9 +137,8 @@ void ControlLoop::leave_gaps() noexcept {
 }
 
 // In the behavior's own convention; of several pairs (`between: all`) the mean.
-void ControlLoop::write_internal_signals() noexcept {
-  const tasks::ControlSet& set = machine_->control().primary;
-  const tasks::ControllerResult& result = controller_.result();
+void SignalWriter::write_internals(const tasks::ControlSet& set,
+                                   const tasks::ControllerResult& result) noexcept {
   for (int i = 0; i < set.internal_count; ++i) {
     const tasks::InternalCommand& c = set.internals[at(i)];
     const behaviors::InternalSignals& out = behavior_.layout.internal[at(c.instance)];
@@ -106,11 +155,10 @@ void ControlLoop::write_internal_signals() noexcept {
   }
 }
 
-void ControlLoop::write_task_signals() noexcept {
+void SignalWriter::write_tasks(const tasks::ControlSet& set,
+                               const tasks::ControllerResult& result) noexcept {
   const behaviors::SignalLayout& layout = behavior_.layout;
-  const tasks::ControlSet& set = machine_->control().primary;
-  const tasks::ControllerResult& result = controller_.result();
-  put(signals_, layout.com_ref, model_.com().position);
+  for (int k = 0; k < 3; ++k) signals_[layout.com_ref + k] = signals_[layout.com_pos + k];
   for (int t = 0; t < set.task_count; ++t) {
     const tasks::TaskCommand& task = set.tasks[at(t)];
     const behaviors::TaskInstance& instance = behavior_.task_instances[at(task.instance)];
@@ -137,6 +185,20 @@ void ControlLoop::write_task_signals() noexcept {
     signals_[out.rank] = result.tasks[at(t)].rank;
     signals_[out.condition] = result.tasks[at(t)].condition;
     signals_[out.authority] = result.tasks[at(t)].authority;
+  }
+}
+
+// By name; what the old behavior has not, is not in force yet.
+void SignalWriter::take_over(const SignalWriter& old, const behaviors::TakeOverMap& map) noexcept {
+  for (auto* in_force : {&task_in_force_, &internal_in_force_}) {
+    std::ranges::fill(*in_force, static_cast<unsigned char>(1));
+  }
+  leave_gaps();
+  for (std::size_t s = 0; s < map.signals.size(); ++s) {
+    if (map.signals[s] >= 0) signals_[map.signals[s]] = old.signals_.values()[s];
+  }
+  for (auto* in_force : {&task_in_force_, &internal_in_force_}) {
+    std::ranges::fill(*in_force, static_cast<unsigned char>(1));
   }
 }
 

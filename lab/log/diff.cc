@@ -195,6 +195,8 @@ class Comparison {
       for (const auto& [slot, value] : e.writes) text += fmt::format(", slot {} = {}", slot, value);
       for (const int event : e.events) text += fmt::format(", event {}", event);
       if (e.limit_steps) text += ", torque steps limited";
+      if (e.late) text += ", late";
+      if (e.requests_lost) text += ", requests of scripts lost";
       return text;
     });
   }

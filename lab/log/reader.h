@@ -44,6 +44,8 @@ struct LoggedEdit {
   std::vector<std::pair<int, double>> writes;  // slots and their new values
   std::vector<int> events;                     // into Log::event_names
   bool limit_steps = false;                    // torque steps were limited in this tick
+  bool late = false;                           // the tick began late
+  bool requests_lost = false;                  // of scripts, whose queue was full
 };
 
 struct LoggedFile {

@@ -139,6 +139,8 @@ struct ReplayStage {
         trace.events.push_back(events[static_cast<std::size_t>(event)]);
       }
       trace.limit_steps |= log->edits[edit].limit_steps;
+      trace.late |= log->edits[edit].late;
+      trace.requests_lost |= log->edits[edit].requests_lost;
     }
   }
 

@@ -17,7 +17,18 @@ std::string state_paths(const ControlLoop& loop, std::span<const int> states) {
   return paths;
 }
 
-const char* unit_of(Fault fault) { return fault == Fault::joint_limit ? "rad" : "Nm"; }
+const char* unit_of(Fault fault) {
+  if (fault == Fault::swing_too_long) return "s";
+  return fault == Fault::joint_limit ? "rad" : "Nm";
+}
+
+// The joint or contact where a fault is; `place` has one.
+const std::string& place_name(const ControlLoop& loop, Fault fault,
+                              const engine::FaultPlace& place) {
+  const model::RobotDescription& robot = loop.behavior().robot;
+  const auto index = static_cast<std::size_t>(place.joint);
+  return fault == Fault::swing_too_long ? robot.contacts[index].name : robot.joints[index].name;
+}
 
 // A fall by its first criterion that holds, with the words for it.
 std::string judge_fall(const ControlLoop& loop, EndCause& cause) {
@@ -43,19 +54,19 @@ std::string judge_fall(const ControlLoop& loop, EndCause& cause) {
   return "a body that is no foot touched something";
 }
 
-std::string judge_swing(const ControlLoop& loop, int foot, EndCause& cause) {
+std::string judge_swing(const ControlLoop& loop, EndCause& cause) {
   cause.criterion = "swing";
-  cause.limit = StepCounter::kMaxSwing;
+  cause.limit = loop.behavior().robot.swing_limit;
   cause.unit = "s";
-  cause.subject = loop.behavior().robot.contacts[static_cast<std::size_t>(foot)].name;
-  return fmt::format("{} in the air for more than {:g} s", cause.subject, StepCounter::kMaxSwing);
+  cause.subject = place_name(loop, Fault::swing_too_long, loop.last_place(Fault::swing_too_long));
+  return fmt::format("{} in the air for more than {:g} s", cause.subject, *cause.limit);
 }
 
 std::string judge_fault(const ControlLoop& loop, Fault fault, EndCause& cause) {
   cause.criterion = std::string(core::fault_name(fault));
   const engine::FaultPlace& place = loop.last_place(fault);
   if (place.joint < 0) return "fault " + cause.criterion;
-  cause.subject = loop.behavior().robot.joints[static_cast<std::size_t>(place.joint)].name;
+  cause.subject = place_name(loop, fault, place);
   cause.value = place.value;
   cause.unit = unit_of(fault);
   return fmt::format("fault {}: {}", cause.criterion, place_text(loop, fault, place));
@@ -99,20 +110,14 @@ const char* run_end_text(RunEnd end) {
   return "";
 }
 
-EndCause explain_end(const ControlLoop& loop, const StepCounter& counter,
-                     std::span<const int> states) {
+EndCause explain_end(const ControlLoop& loop, std::span<const int> states) {
   EndCause cause;
   cause.time = loop.time();
   cause.states = state_paths(loop, states);
   const Fault fault = loop.ended_by();
-  std::string what;
-  if (fault == Fault::fall) {
-    what = judge_fall(loop, cause);
-  } else if (fault != Fault::count) {
-    what = judge_fault(loop, fault, cause);
-  } else {
-    what = judge_swing(loop, counter.long_swing_foot(), cause);
-  }
+  const std::string what = fault == Fault::fall             ? judge_fall(loop, cause)
+                           : fault == Fault::swing_too_long ? judge_swing(loop, cause)
+                                                            : judge_fault(loop, fault, cause);
   cause.text = fmt::format("{}, at {:.3f} s in {}", what, cause.time,
                            cause.states.empty() ? "no state" : cause.states);
   return cause;
@@ -120,9 +125,9 @@ EndCause explain_end(const ControlLoop& loop, const StepCounter& counter,
 
 std::string place_text(const ControlLoop& loop, Fault fault, const engine::FaultPlace& place) {
   if (place.joint < 0) return {};
-  return fmt::format("{} {:.{}f} {}",
-                     loop.behavior().robot.joints[static_cast<std::size_t>(place.joint)].name,
-                     place.value, fault == Fault::joint_limit ? 3 : 1, unit_of(fault));
+  const int digits = fault == Fault::torque_limit || fault == Fault::torque_step ? 1 : 3;
+  return fmt::format("{} {:.{}f} {}", place_name(loop, fault, place), place.value, digits,
+                     unit_of(fault));
 }
 
 std::vector<WorstFault> worst_faults(const ControlLoop& loop) {
@@ -131,9 +136,7 @@ std::vector<WorstFault> worst_faults(const ControlLoop& loop) {
     const auto fault = static_cast<Fault>(i);
     const engine::FaultPlace& place = loop.worst_place(fault);
     if (place.joint < 0) continue;
-    worst.push_back({fault,
-                     loop.behavior().robot.joints[static_cast<std::size_t>(place.joint)].name,
-                     place.value, unit_of(fault)});
+    worst.push_back({fault, place_name(loop, fault, place), place.value, unit_of(fault)});
   }
   return worst;
 }

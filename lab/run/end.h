@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/tick/control_loop.h"
-#include "lab/run/step_counter.h"
 
 namespace footfall::lab {
 
@@ -29,18 +28,17 @@ struct EndCause {
 };
 
 // After the last tick of a run that fell or was stopped. `states`: atomic ones at its start.
-EndCause explain_end(const engine::ControlLoop& loop, const StepCounter& counter,
-                     std::span<const int> states);
+EndCause explain_end(const engine::ControlLoop& loop, std::span<const int> states);
 
-// The largest of a joint's faults in a run.
+// The largest of a joint's or contact's faults in a run.
 struct WorstFault {
   core::Fault fault = core::Fault::count;
-  std::string joint;
-  double value = 0.0;  // N m or rad, as engine::FaultPlace says
+  std::string joint;   // or contact
+  double value = 0.0;  // N m, rad or s, as engine::FaultPlace says
   std::string unit;
 };
 std::vector<WorstFault> worst_faults(const engine::ControlLoop& loop);
-// `left_knee 7.2 Nm`; empty if the fault is no joint's.
+// `left_knee 7.2 Nm`; empty if the fault has no place.
 std::string place_text(const engine::ControlLoop& loop, core::Fault fault,
                        const engine::FaultPlace& place);
 

@@ -39,9 +39,7 @@ class Recorder final : public engine::TickObserver {
   }
 
   bool ends(const engine::ControlLoop& loop) override {
-    if (metrics_.counter().swing_too_long()) {
-      end_ = RunEnd::fall;
-    } else if (spec_.max_steps > 0 && metrics_.counter().steps() >= spec_.max_steps) {
+    if (spec_.max_steps > 0 && metrics_.counter().steps() >= spec_.max_steps) {
       end_ = RunEnd::steps;
     } else if (spec_.max_time > 0.0 && loop.time() + 0.5 * loop.period() >= spec_.max_time) {
       end_ = RunEnd::time;
@@ -165,12 +163,6 @@ RunEnd end_of(const engine::ControlLoop& loop) {
   }
 }
 
-void add_faults(const engine::ControlLoop& loop, core::FaultCounters& faults) {
-  for (std::size_t i = 0; i < faults.count.size(); ++i) {
-    faults.count[i] += loop.faults().count[i] + loop.machine().faults().count[i];
-  }
-}
-
 }  // namespace
 
 bool has_goal(const behaviors::Behavior& behavior) {
@@ -231,12 +223,10 @@ RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
                                                        : end_of(last);
   result.figures = recorder.figures(result.end == RunEnd::fall);
   if (result.end == RunEnd::fall || result.end == RunEnd::fault) {
-    result.cause = explain_end(last, recorder.steps(), recorder.log().states_before());
+    result.cause = explain_end(last, recorder.log().states_before());
   }
   result.worst = worst_faults(last);
-  if (end == engine::ExecutiveEnd::observer && result.end == RunEnd::fall)
-    result.faults.add(core::Fault::swing_too_long);
-  add_faults(last, result.faults);
+  result.faults = last.faults();
   result.tick_time = executive.tick_time();
   if (spec.allocations) result.allocations = spec.allocations();
   result.reloads = executive.exchanges();

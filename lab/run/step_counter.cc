@@ -26,7 +26,6 @@ StepEvent StepCounter::observe(const bool* contact, const double* height) noexce
       ++foot.air_ticks;
       if (foot.air_ticks * period_ >= kMinFlight) foot.pending = false;
       foot.rise = std::max(foot.rise, height[f] - foot.lift_height);
-      if (foot.air_ticks * period_ > kMaxSwing) long_swing_ = f;
     } else if (!foot.in_contact) {
       foot.in_contact = true;
       // Half a period of tolerance: 60 ms is a whole number of ticks at most rates.

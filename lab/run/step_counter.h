@@ -19,7 +19,6 @@ class StepCounter {
  public:
   static constexpr double kMinFlight = 0.06;  // s
   static constexpr double kMinRise = 0.02;    // m
-  static constexpr double kMaxSwing = 1.0;    // s: a longer swing is a fall
 
   StepCounter(int feet, double period) : feet_(feet), period_(period) {}
 
@@ -27,8 +26,6 @@ class StepCounter {
   StepEvent observe(const bool* contact, const double* height) noexcept;
 
   std::int64_t steps() const noexcept { return steps_; }
-  bool swing_too_long() const noexcept { return long_swing_ >= 0; }
-  int long_swing_foot() const noexcept { return long_swing_; }  // contact index, -1: none
   // True in the tick in which this foot came down after a counted flight.
   bool touched_down(int foot) const noexcept {
     return feet_state_[static_cast<std::size_t>(foot)].landed;
@@ -50,7 +47,6 @@ class StepCounter {
   std::array<Foot, core::kMaxContacts> feet_state_{};
   std::int64_t steps_ = 0;
   double worst_clearance_ = 1e9;
-  int long_swing_ = -1;
   bool first_ = true;
 };
 

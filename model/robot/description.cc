@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <string_view>
 
 namespace footfall::model {
@@ -17,6 +18,15 @@ int find_named(const std::vector<Named>& list, std::string_view name) {
 }
 
 }  // namespace
+
+std::vector<double> RobotDescription::torque_limits() const {
+  std::vector<double> limits;
+  for (const JointDescription& joint : joints) {
+    limits.push_back(joint.torque_limit > 0.0 ? joint.torque_limit
+                                              : std::numeric_limits<double>::infinity());
+  }
+  return limits;
+}
 
 int RobotDescription::find_joint(std::string_view joint) const { return find_named(joints, joint); }
 int RobotDescription::find_contact(std::string_view contact) const {

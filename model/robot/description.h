@@ -72,16 +72,17 @@ struct RobotDescription {
   double tilt_limit = 0.8;                           // rad
   double height_limit = 0.6;       // part of standing_height below which it has fallen
   double torque_step_limit = 0.0;  // N m between neighbouring ticks; 0: none
+  double swing_limit = 1.0;        // s, a foot in the air while stepping
   double edit_ramp = 0.1;          // s, shortest of a person's edits
   int overruns = 15;               // late ticks in a row that are the fault tick.overrun
   double reload_watch = 2.0;       // s after a reload, in which a fault takes it back
-  // By fault. What the file does not name: fall and simulator_warning safe_state, non_finite
-  // safe_stop, the rest keep_going.
+  // By fault; what the file does not name: FaultRule::otherwise.
   std::array<core::Reaction, core::kFaultCount> reactions{};
 
   double rate_hz() const { return static_cast<double>(rate_mhz) * 1e-3; }
   double period_s() const { return 1e3 / static_cast<double>(rate_mhz); }
   int joint_count() const { return static_cast<int>(joints.size()); }
+  std::vector<double> torque_limits() const;  // N m, by joint; infinite where none is given
   int find_joint(std::string_view name) const;
   int find_contact(std::string_view name) const;
   int find_group(std::string_view name) const;

@@ -8,7 +8,7 @@ using namespace core;  // constructors of the tables
 
 constexpr WordSpec kReactionRows[] = {
     {"continue", "the fault is counted and logged"},
-    {"safe_state", "the behavior's `safe` state is entered"},
+    {"safe_state", "the behavior's `safe` state is entered; without one as safe_stop"},
     {"safe_stop", "the run ends at once"},
 };
 
@@ -39,9 +39,7 @@ constexpr KeySpec kRobotRows[] = {
     key("sensors", map_of(kSensorsKeys), "the sensors"),
     key("symmetry", map_of(kSymmetryKeys), "items exchanged in a mirror image"),
     key("limits", map_of(kLimitsKeys), "limits beyond which a fault is raised"),
-    key("faults", by_name(choice(kReactionRows)),
-        "reactions by fault. Without a word: `fall` and `simulator` safe_state, `non_finite` "
-        "safe_stop, the others continue"),
+    key("faults", by_name(choice(kReactionRows)), "reactions by [fault](#faults)"),
 };
 
 constexpr KeySpec kJointRows[] = {
@@ -108,6 +106,7 @@ constexpr KeySpec kLimitsRows[] = {
         .otherwise("60 %"),
     key("torque_step", quantity(kTorque), "change of a joint's torque between two ticks")
         .otherwise("none"),
+    key("swing", quantity(kTime), "of a foot in the air while the behavior steps").otherwise("1 s"),
     key("edit_ramp", quantity(kTime),
         "minimum ramp duration of values changed by a user during a run")
         .otherwise("100 ms"),

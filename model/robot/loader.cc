@@ -12,6 +12,7 @@
 #include "core/yaml/glob.h"
 #include "core/yaml/value_reader.h"
 #include "model/robot/description.h"
+#include "model/robot/fault_rules.h"
 #include "model/robot/keys.h"
 
 namespace footfall::model {
@@ -52,13 +53,9 @@ class RobotLoader {
 
  private:
   void set_default_reactions() {
-    const auto react = [this](core::Fault fault, core::Reaction reaction) {
-      robot_.reactions[static_cast<std::size_t>(fault)] = reaction;
-    };
-    // What no robot can go on with, whether its file speaks of it or not.
-    react(core::Fault::fall, core::Reaction::safe_state);
-    react(core::Fault::simulator_warning, core::Reaction::safe_state);
-    react(core::Fault::non_finite, core::Reaction::safe_stop);
+    for (const FaultRule& rule : fault_rules()) {
+      robot_.reactions[static_cast<std::size_t>(rule.fault)] = rule.otherwise;
+    }
   }
 
   void read_head(const YamlNode& root) {
@@ -342,6 +339,11 @@ class RobotLoader {
       const auto count = core::read_integer(*overruns, 1, 1'000'000, diagnostics_);
       robot_.overruns = static_cast<int>(count.value_or(robot_.overruns));
     }
+    if (const YamlNode* const swing = node.find("swing")) {
+      robot_.swing_limit = core::read_bounded(*swing, core::kTime, kTiny, 60.0, diagnostics_,
+                                              "a time above zero and at most 60 s")
+                               .value_or(robot_.swing_limit);
+    }
     read("reload_watch", core::kTime, 60.0, "a time of at most 60 s", robot_.reload_watch);
   }
 
@@ -359,9 +361,25 @@ class RobotLoader {
             entry.key_mark, "unknown-fault",
             fmt::format("no fault '{}'{}", entry.key, hint_or_list(entry.key, names)));
       } else if (choice) {
-        robot_.reactions[static_cast<std::size_t>(found - names.begin())] =
-            static_cast<core::Reaction>(*choice);
+        set_reaction(entry, static_cast<core::Fault>(found - names.begin()),
+                     static_cast<core::Reaction>(*choice));
       }
+    }
+  }
+
+  void set_reaction(const YamlEntry& entry, core::Fault fault, core::Reaction reaction) {
+    const auto index = static_cast<std::size_t>(fault);
+    const std::string_view refusing = fault_rules()[index].refusing;
+    const std::string never = why_never(robot_, fault);
+    if (!never.empty()) {
+      diagnostics_.error(entry.key_mark, "impossible-fault",
+                         fmt::format("this robot never has '{}': {}", entry.key, never));
+    } else if (reaction == core::Reaction::keep_going && !refusing.empty()) {
+      diagnostics_.error(entry.value.mark, "refused-reaction",
+                         fmt::format("'{}' cannot continue: {}; it is safe_state or safe_stop",
+                                     entry.key, refusing));
+    } else {
+      robot_.reactions[index] = reaction;
     }
   }
 

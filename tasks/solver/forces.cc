@@ -53,12 +53,12 @@ void Wbosc::add_internal_forces() noexcept {
   double* f0 = forces_.data();
   double* f1 = f0 + nc;
   double* probe = f1 + nc;
-  contact_forces(solution_.tau.data(), f0);
+  contact_forces(solution_.asked.data(), f0);
   std::fill_n(internal_norm2_.data(), rows, 0.0);
   for (int q = 0; q < nulls; ++q) {  // column q of G = W_int ∂f/∂α_q, stored transposed
     for (int j = 0; j < na; ++j) {
       const int actuator = actuator_order_[extent(col_u_ + j)];
-      probe[actuator] = solution_.tau[extent(actuator)] + N_[extent(q * na + j)];
+      probe[actuator] = solution_.asked[extent(actuator)] + N_[extent(q * na + j)];
     }
     contact_forces(probe, f1);
     for (int i = 0; i < rows; ++i) {
@@ -107,7 +107,7 @@ void Wbosc::add_null_torque(int nulls, int rows) noexcept {
   for (int j = 0; j < na; ++j) {
     double value = 0.0;
     for (int q = 0; q < nulls; ++q) value += N_[extent(q * na + j)] * alpha_[extent(q)];
-    solution_.tau[extent(actuator_order_[extent(col_u_ + j)])] += value;
+    solution_.asked[extent(actuator_order_[extent(col_u_ + j)])] += value;
   }
 }
 

@@ -38,6 +38,7 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   problem_.W_int.assign(extent(sizes.internal_rows * sizes.contact_rows), 0.0);
   problem_.F_int.assign(extent(sizes.internal_rows), 0.0);
   problem_.K_F.assign(extent(sizes.internal_rows), 0.0);
+  solution_.asked.assign(extent(sizes.na), 0.0);
   solution_.tau.assign(extent(sizes.na), 0.0);
   solution_.f.assign(extent(sizes.contact_rows), 0.0);
   solution_.achieved.assign(extent(sizes.task_rows), 0.0);
@@ -261,7 +262,7 @@ void Wbosc::torque_from_range() noexcept {
     rotate_back(actuation_rotation(), na, tau_p);
   }
   for (int j = 0; j < na; ++j) {
-    solution_.tau[extent(actuator_order_[extent(col_u_ + j)])] = tau_p[j];
+    solution_.asked[extent(actuator_order_[extent(col_u_ + j)])] = tau_p[j];
   }
 }
 
@@ -274,13 +275,11 @@ void Wbosc::finish() noexcept {
   solution_.finite = true;
   solution_.limited = false;
   for (int j = 0; j < na; ++j) {
-    if (!std::isfinite(tau[j])) solution_.finite = false;
-    if (!problem_.torque_limit) continue;
-    const double limited = std::clamp(tau[j], -problem_.torque_limit[j], problem_.torque_limit[j]);
-    solution_.limited |= limited != tau[j];
-    tau[j] = limited;
+    const double asked = solution_.asked[extent(j)];
+    solution_.finite &= std::isfinite(asked);
+    tau[j] = problem_.torque_limit ? within_limit(asked, problem_.torque_limit[j]) : asked;
+    solution_.limited |= tau[j] != asked;
   }
-  if (!solution_.finite) std::fill_n(tau, na, 0.0);
   contact_forces(tau, solution_.f.data());
   for (int i = 0; i < problem_.internal_rows; ++i) {
     double value = 0.0;

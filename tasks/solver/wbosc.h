@@ -63,8 +63,14 @@ struct WboscProblem {
   const double* tau_measured = nullptr;  // na; nullptr: no feedback
 };
 
+// The one place that says what a limit does to a torque, N m.
+inline double within_limit(double tau, double limit) noexcept {
+  return tau > limit ? limit : tau < -limit ? -limit : tau;
+}
+
 struct WboscSolution {
-  std::vector<double> tau;       // na, after limits
+  std::vector<double> asked;     // na, N m, before limits; not finite if `finite` is false
+  std::vector<double> tau;       // na, within limits: all below is under this torque
   std::vector<double> f;         // contact_rows: ground on robot, as the control law predicts it
   std::vector<double> achieved;  // task_rows: J q̈ + J̇ q̇ under tau
   std::vector<double> internal;  // internal_rows: W_int f under tau
@@ -74,7 +80,7 @@ struct WboscSolution {
   int contact_rank = 0;
   int actuation_rank = 0;  // of φ; na - rank internal-force directions
   bool limited = false;    // a torque limit acted
-  bool finite = true;      // false: tau is zero
+  bool finite = true;      // false: a torque asked for is not a number
 };
 
 class Wbosc {

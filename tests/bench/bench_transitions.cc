@@ -111,10 +111,11 @@ int run(const char* behavior_name) {
     if (loop.time() > kSettled && ended) {
       tasks::WholeBodyController twin = law;  // same integrals
       const tasks::ActiveControl old = carried_to_end(previous, now);
-      twin.compute(old, loop.ticks(), loop.sensors().tau.data());
+      std::array<double, core::kMaxJoints> carried{};
+      twin.compute(old, loop.ticks(), loop.sensors().tau.data(), carried.data());
       const double* after =
           now.has_other && now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      ends.add(largest_difference(twin.result().tau.data(), after, n),
+      ends.add(largest_difference(carried.data(), after, n),
                largest_difference(twin.tau_primary(), twin.tau_other(), n));
     }
     if (starts || ended) last_change = loop.time();

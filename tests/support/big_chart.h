@@ -92,10 +92,10 @@ class BigChart {
     panic_ = event("panic");
     contact_ = signals.find("contact.right_foot");
     height_ = signals.find("com.pos.z");
-    machine.start(measure);
+    machine.start();
   }
 
-  void tick() { machine.tick(++now, measure); }
+  void tick() { machine.tick(++now); }
   // One tick of a lively run: events here and there, feet that touch, quiet stretches for timers.
   void drive() {
     const bool lively = now / 64 % 2 == 0;
@@ -120,11 +120,6 @@ class BigChart {
   int next_all = -1;
 
  private:
-  class Zero final : public behaviors::Measure {
-   public:
-    double position(tasks::TaskType, int, int) const noexcept override { return 0.0; }
-  };
-
   static std::unique_ptr<behaviors::Behavior> load() {
     core::Diagnostics diagnostics;
     behaviors::LoadOptions options;
@@ -141,7 +136,6 @@ class BigChart {
     return random_ % n == 0;
   }
 
-  Zero measure;
   std::vector<int> skip_, home_, alarm_;
   int restart_ = -1, panic_ = -1, contact_ = -1, height_ = -1;
   std::int64_t random_ = 20150901;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "behaviors/compiled/control_set.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -143,28 +144,13 @@ std::vector<double> PhysicsLaw::freedom(const std::vector<int>& contacts,
 
 RestSolution PhysicsLaw::rest(const ControlSpec& control, const std::vector<double>& internal) {
   tasks::ControlSet& set = control_->primary;
-  set = {};
-  set.contact_count = static_cast<int>(control.contacts.size());
-  std::copy(control.contacts.begin(), control.contacts.end(), set.contacts.begin());
-  for (int k = control.tasks.first; k < control.tasks.end(); ++k) {
-    const TaskSpec& spec = behavior_.tasks[at(k)];
-    tasks::TaskCommand& command = set.tasks[at(set.task_count++)];
-    command = command_of(spec);
-    command.first_axis = set.axis_count;
-    command.axis_count = spec.axes.count;
-    for (int a = spec.axes.first; a < spec.axes.end(); ++a) {
-      set.axes[at(set.axis_count++)].axis = behavior_.axes[at(a)].axis;
-    }
-  }
-  for (int k = 0; k < control.internals.count; ++k) {
-    const InternalSpec& spec = behavior_.internals[at(control.internals.first + k)];
-    set.internals[at(set.internal_count++)] = {spec.instance, spec.contact_a, spec.contact_b,
-                                               internal[at(k)], 0.0};
-  }
-  controller_.compute(*control_, 0, nullptr);
+  fill_control_set(behavior_, control, set);
+  for (int k = 0; k < control.internals.count; ++k)
+    set.internals[at(k)].reference = internal[at(k)];
   RestSolution result;
+  result.tau.resize(at(model_.joint_count()));
+  controller_.compute(*control_, 0, nullptr, result.tau.data());
   const tasks::ControllerResult& out = controller_.result();
-  result.tau.assign(out.tau.begin(), out.tau.begin() + model_.joint_count());
   for (const int contact : control.contacts) result.forces.push_back(out.force[at(contact)]);
   return result;
 }

@@ -16,8 +16,6 @@ void add_built_in(LoadContext& context) {
     const auto name = core::fault_name(static_cast<core::Fault>(f));
     behavior.fault_events.push_back(context.add_event(fmt::format("fault.{}", name)));
   }
-  behavior.event_overflow =
-      behavior.fault_events[static_cast<std::size_t>(core::Fault::event_overflow)];
   for (const auto& contact : behavior.robot.contacts) {
     behavior.touchdown_events.push_back(
         context.add_event(fmt::format("contact.{}.touchdown", contact.name)));

@@ -16,11 +16,6 @@ constexpr int kTicks = 8;
 constexpr int kEvents = 4;
 constexpr int kMostStates = 300;  // a run of more takes its time, and finds nothing new
 
-class Still final : public behaviors::Measure {
- public:
-  double position(tasks::TaskType, int, int) const noexcept override { return 0.5; }
-};
-
 void run_chart(const behaviors::Behavior& behavior) {
   std::vector<behaviors::TraceStep> steps;
   for (const std::string& event : behavior.events) {
@@ -34,9 +29,8 @@ void run_chart(const behaviors::Behavior& behavior) {
 void run_machine(const behaviors::Behavior& behavior) {
   core::SignalTable signals = behavior.signals;
   behaviors::Machine machine(behavior, signals);
-  const Still measure;
-  machine.start(measure);
-  for (int tick = 0; tick < kTicks; ++tick) machine.tick(tick, measure);
+  machine.start();
+  for (int tick = 0; tick < kTicks; ++tick) machine.tick(tick);
 }
 
 void load_and_run(const std::string& text) {

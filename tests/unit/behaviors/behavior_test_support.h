@@ -1,7 +1,6 @@
 // Short ways to load a behavior from text, run its statechart, and quote its errors.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -67,27 +66,33 @@ inline std::vector<std::string> trace_of(const std::string& text, const std::str
 
 using Lines = std::vector<std::string>;
 
-// A robot that measures what the test says: 0 elsewhere.
-class FixedMeasure final : public behaviors::Measure {
- public:
-  double position(tasks::TaskType type, int point, int axis) const noexcept override {
-    const auto found = values.find({static_cast<int>(type), point, axis});
-    return found == values.end() ? 0.0 : found->second;
-  }
-  void set(tasks::TaskType type, int point, int axis, double value) {
-    values[{static_cast<int>(type), point, axis}] = value;
-  }
-  std::map<std::array<int, 3>, double> values;
-};
+enum class Body { none, standing };  // whether a runner has a robot that measures
 
-// A machine on a table of its own, one tick after the other.
+// A machine on a table of its own, one tick after the other. Without a body every task measures 0;
+// with one the robot stands at its nominal posture and is carried about by the test.
 class Runner {
  public:
-  explicit Runner(std::unique_ptr<behaviors::Behavior> loaded)
-      : behavior(std::move(loaded)), signals(behavior->signals), machine(*behavior, signals) {}
+  explicit Runner(std::unique_ptr<behaviors::Behavior> loaded, Body body = Body::none)
+      : behavior(std::move(loaded)),
+        signals(behavior->signals),
+        model(body == Body::none ? nullptr
+                                 : std::make_unique<model::ControlModel>(behavior->robot)),
+        machine(*behavior, signals, model.get()) {
+    if (model == nullptr) return;
+    state.p_WB[2] = behavior->robot.standing_height;
+    for (std::size_t j = 0; j < behavior->robot.joints.size(); ++j) {
+      state.q[j] = behavior->robot.joints[j].posture;
+    }
+    model->update(state);
+  }
 
-  void start() { machine.start(measure); }
-  void tick() { machine.tick(now++, measure); }
+  void start() { machine.start(); }
+  void tick() { machine.tick(now++); }
+  // Carries the whole robot along one axis until its centre of mass, or a point, is there (m).
+  void carry_com(std::size_t axis, double to) { carry(axis, to - model->com().position[axis]); }
+  void carry_point(int point, std::size_t axis, double to) {
+    carry(axis, to - model->point_position(point)[axis]);
+  }
   void run_to(std::int64_t end) {
     while (now <= end) tick();
   }
@@ -125,9 +130,16 @@ class Runner {
 
   std::unique_ptr<behaviors::Behavior> behavior;
   core::SignalTable signals;
+  std::unique_ptr<model::ControlModel> model;
   behaviors::Machine machine;
-  FixedMeasure measure;
+  model::State state;
   std::int64_t now = 0;
+
+ private:
+  void carry(std::size_t axis, double by) {
+    state.p_WB[axis] += by;
+    model->update(state);
+  }
 };
 
 }  // namespace footfall::tests

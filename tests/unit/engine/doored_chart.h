@@ -11,7 +11,6 @@
 
 #include "behaviors/loader.h"
 #include "engine/edits/door.h"
-#include "tests/support/no_measure.h"
 
 namespace footfall::tests {
 
@@ -23,11 +22,11 @@ struct DooredChart {
     signals = behavior->signals;
     machine = std::make_unique<behaviors::Machine>(*behavior, signals);
     door = std::make_unique<engine::EditDoor>(*behavior, capacity);
-    machine->start(measure);
+    machine->start();
   }
   void tick() {
     door->apply(now, *machine);
-    machine->tick(now++, measure);
+    machine->tick(now++);
   }
   int parameter(const char* name) const { return behavior->find_parameter(name); }
   int slot(const char* name) const {
@@ -44,7 +43,6 @@ struct DooredChart {
   core::SignalTable signals;
   std::unique_ptr<behaviors::Machine> machine;
   std::unique_ptr<engine::EditDoor> door;
-  NoMeasure measure;
   std::int64_t now = 0;
 };
 

@@ -34,7 +34,7 @@ contacts:
 points: {head: {site: head_site}}
 symmetry: {swap: [[right_foot, left_foot], [right_leg, left_leg]]}
 sensors: {imu: {site: imu_site}, mocap: {sites: ["led_*", crown]}, switches: ["*_foot"]}
-limits: {tilt: 0.7 rad, height: 65 %, torque_step: 5 Nm, edit_ramp: 80 ms, overruns: 7}
+limits: {tilt: 0.7 rad, height: 65 %, torque_step: 5 Nm, edit_ramp: 80 ms, swing: 1.5 s, overruns: 4}
 faults: {fall: safe_stop, imu.stale: safe_state, torque.limit: continue}
 )";
 
@@ -113,7 +113,8 @@ TEST_F(RobotDescriptionTest, AWholeFileIsRead) {
   EXPECT_DOUBLE_EQ(robot.height_limit, 0.65);
   EXPECT_DOUBLE_EQ(robot.torque_step_limit, 5);
   EXPECT_DOUBLE_EQ(robot.edit_ramp, 0.08);
-  EXPECT_EQ(robot.overruns, 7);
+  EXPECT_DOUBLE_EQ(robot.swing_limit, 1.5);
+  EXPECT_EQ(robot.overruns, 4);
   EXPECT_EQ(robot.find_joint("left_hip"), 2);
   EXPECT_EQ(robot.find_contact("left_foot"), 1);
   EXPECT_EQ(robot.find_group("nobody"), -1);
@@ -130,6 +131,20 @@ TEST_F(RobotDescriptionTest, ReactionsHaveSafeDefaults) {
   EXPECT_EQ(reaction(core::Fault::non_finite), core::Reaction::safe_stop);
   EXPECT_EQ(reaction(core::Fault::simulator_warning), core::Reaction::safe_state);
   EXPECT_EQ(reaction(core::Fault::planner_late), core::Reaction::keep_going);
+  EXPECT_EQ(reaction(core::Fault::swing_too_long), core::Reaction::safe_stop);
+  EXPECT_EQ(reaction(core::Fault::no_estimate), core::Reaction::safe_stop);
+}
+
+TEST_F(RobotDescriptionTest, AFaultAfterWhichNothingCanGoOnRefusesToContinue) {
+  for (const char* fault : {"fall", "simulator", "non_finite", "no_estimate"}) {
+    const std::string text = problems("fall: safe_stop", std::string(fault) + ": continue");
+    EXPECT_NE(text.find("'" + std::string(fault) + "' cannot continue"), std::string::npos) << text;
+  }
+}
+
+TEST_F(RobotDescriptionTest, AFaultThatTheRobotCanNeverHaveIsRefused) {
+  EXPECT_NE(problems("imu: {site: imu_site}, ", "").find("never has 'imu.stale'"),
+            std::string::npos);
 }
 
 TEST_F(RobotDescriptionTest, AnotherKindIsOneLine) {

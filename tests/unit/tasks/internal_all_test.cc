@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -97,7 +98,8 @@ class Quadruped : public testing::Test {
   void compute(const ControlSet& set) {
     tasks::ActiveControl control;
     control.primary = set;
-    controller_->compute(control, tick_++, nullptr);
+    std::array<double, 12> tau{};
+    controller_->compute(control, tick_++, nullptr, tau.data());
   }
   Eigen::Vector3d force(int contact) const {
     const auto& f = controller_->result().force[static_cast<std::size_t>(contact)];

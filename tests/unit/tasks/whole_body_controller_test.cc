@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <array>
 
 #include "tests/support/allocation_guard.h"
 #include "tests/support/dense_solve.h"
@@ -46,9 +47,9 @@ class Controller : public testing::Test {
   }
   void compute(const ActiveControl& control) {
     const std::array<double, 6> measured{};
-    controller_.compute(control, tick_++, measured.data());
+    controller_.compute(control, tick_++, measured.data(), tau_.data());
   }
-  VectorXd tau() const { return Eigen::Map<const VectorXd>(controller_.result().tau.data(), 6); }
+  VectorXd tau() const { return Eigen::Map<const VectorXd>(tau_.data(), 6); }
   // As the controller should have assembled the single-support law.
   NaiveProblem single_problem(const std::vector<double>& u) {
     tasks::Wbosc solver(hume_sizes());
@@ -69,6 +70,7 @@ class Controller : public testing::Test {
   model::RobotDescription robot_ = load_hume();
   model::ControlModel model_{robot_};
   tasks::WholeBodyController controller_{model_, {}, {4, 16, 2, 2}, 1.0 / 1500.0};
+  std::array<double, 6> tau_{};
   Random random_{11};
   ControlSet dual_, single_;
   ActiveControl control_;
@@ -243,14 +245,16 @@ TEST_F(Controller, FromTheStanceFeetTheTorquesAreThoseOfTheWorldWithTheReference
 TEST_F(Controller, LimitsAreReported) {
   tasks::WholeBodyController limited(model_, std::vector<double>(6, 1.0), {4, 16, 2, 2}, 1e-3);
   control_.primary = single_;
-  limited.compute(control_, 0, nullptr);
+  limited.compute(control_, 0, nullptr, tau_.data());
   EXPECT_TRUE(limited.result().limited);
-  for (std::size_t j = 0; j < 6; ++j) EXPECT_LE(std::abs(limited.result().tau[j]), 1.0);
+  const VectorXd asked = tau();
+  EXPECT_LE((asked - torque_of(single_)).cwiseAbs().maxCoeff(),
+            1e-12 * asked.cwiseAbs().maxCoeff());
+  EXPECT_GT(asked.cwiseAbs().maxCoeff(), 1.0);  // what was asked for, not what a joint can give
 }
 
 TEST_F(Controller, AnEmptyControlSetIsLimp) {
   EXPECT_EQ(torque_of(ControlSet{}).cwiseAbs().maxCoeff(), 0.0);
-  EXPECT_TRUE(controller_.result().finite);
 }
 
 TEST_F(Controller, ComputingAllocatesNothing) {

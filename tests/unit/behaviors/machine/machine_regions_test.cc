@@ -68,10 +68,11 @@ void expect_same(const tasks::ControlSet& a, const tasks::ControlSet& b) {
 }
 
 TEST(MachineRegions, ARegionWithoutControlLeavesControlToTheLastBitAsItIs) {
-  Runner dark(load(legs_and_lamp())), blinking(load(legs_and_lamp()));
+  Runner dark(load(legs_and_lamp()), Body::standing);
+  Runner blinking(load(legs_and_lamp()), Body::standing);
   const int blink = blinking.behavior->find_event("blink");
   for (Runner* run : {&dark, &blinking}) {
-    run->measure.set(TaskType::com_position, -1, 2, 0.9);
+    run->carry_com(2, 0.9);
     run->start();
   }
   int switched = 0, states = 0;
@@ -99,10 +100,11 @@ TEST(MachineRegions, ARegionWithoutControlLeavesControlToTheLastBitAsItIs) {
 
 TEST(MachineRegions, AnotherTaskBesideAContactTransitionStartsNoReferenceAnew) {
   const std::string damping = ", tasks: {d: {type: joint_damping, priority: 2, gains: {kd: 1}}}";
-  Runner dark(load(legs_and_lamp(damping))), blinking(load(legs_and_lamp(damping)));
+  Runner dark(load(legs_and_lamp(damping)), Body::standing);
+  Runner blinking(load(legs_and_lamp(damping)), Body::standing);
   const int blink = blinking.behavior->find_event("blink");
   for (Runner* run : {&dark, &blinking}) {
-    run->measure.set(TaskType::com_position, -1, 2, 0.9);
+    run->carry_com(2, 0.9);
     run->start();
   }
   for (int k = 0; k < 1200; ++k) {
@@ -126,8 +128,9 @@ TEST(MachineRegions, AStateThatIsEnteredAgainStartsItsReferenceAnew) {
            "[right_foot, left_foot]\n  transitions: [{on: other, do: [{mark: m}]}]\n  states:\n"
            "    up:\n      tasks: {h: {type: com_position, axes: [z], gains: {kp: 1}, reference: "
            "{trajectory: polynomial, order: 3, to: 1 m, over: 1 s}}}\n"
-           "      transitions: [{on: again, to: up}]\n"));
-  run.measure.set(TaskType::com_position, -1, 2, 0.9);
+           "      transitions: [{on: again, to: up}]\n"),
+      Body::standing);
+  run.carry_com(2, 0.9);
   run.start();
   run.run_to(749);
   run.machine.raise(run.behavior->find_event("other"));  // a transition without exit or entry

@@ -27,10 +27,10 @@ std::unique_ptr<behaviors::Behavior> hume(const std::string& text) {
 // Balance, let go at 5.5 s, so that the first stride begins at tick 8250.
 class Balance : public testing::Test {
  protected:
-  Balance() : run(balance()) {
+  Balance() : run(balance(), Body::standing) {
     run.signal("com.pos.z") = 0.9;
     run.signal("contact.right_foot") = run.signal("contact.left_foot") = 1.0;
-    run.measure.set(TaskType::com_position, -1, 2, 0.84);
+    run.carry_com(2, 0.84);
     run.start();
     run.run_to(8249);
     run.machine.raise(run.behavior->find_event("start"));
@@ -40,8 +40,8 @@ class Balance : public testing::Test {
 };
 
 TEST_F(Balance, RisesOnAMinimumJerkPathFromWhatIsMeasured) {
-  Runner rise(balance());
-  rise.measure.set(TaskType::com_position, -1, 2, 0.84);
+  Runner rise(balance(), Body::standing);
+  rise.carry_com(2, 0.84);
   rise.start();
   rise.tick();
   EXPECT_EQ(rise.active(), "rise");
@@ -143,10 +143,10 @@ TEST_F(Balance, ATaskThatWasInForceIsKeptAnotherIsFresh) {
 }
 TEST_F(Balance, TheSwingFootIsHeldThenLiftedFromWhereItWasHeld) {
   const int left = run.behavior->robot.find_contact("left_foot");
-  run.measure.set(TaskType::point_position, left, 1, 0.1);
-  run.measure.set(TaskType::point_position, left, 2, 0.01);
+  run.carry_point(left, 1, 0.1);
+  run.carry_point(left, 2, 0.01);
   run.run_to(8250 + 24);
-  run.measure.set(TaskType::point_position, left, 2, 0.02);  // it sags: the reference does not
+  run.carry_point(left, 2, 0.02);  // it sags: the reference does not
   run.run_to(8250 + 24 + 36);
   ASSERT_EQ(run.active(), "step.right_foot.lift");
   EXPECT_DOUBLE_EQ(run.axis("swing", 2).ref, 0.01);

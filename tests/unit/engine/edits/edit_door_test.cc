@@ -204,7 +204,7 @@ TEST_F(EditDoor, WhatATickRecordedGivesTheSameRunAgain) {
   ASSERT_EQ(recorded.size(), 2U);
   behaviors::Machine again(*behavior, signals);
   engine::EditDoor other(*behavior, 4);
-  again.start(measure);
+  again.start();
   for (int k = 0; k < 8; ++k) {
     if (k == 0) {
       ASSERT_TRUE(other.resubmit(recorded[0]));
@@ -213,7 +213,7 @@ TEST_F(EditDoor, WhatATickRecordedGivesTheSameRunAgain) {
       ASSERT_TRUE(other.resubmit(recorded[1]));
     }
     other.apply(k, again);
-    again.tick(k, measure);
+    again.tick(k);
     const auto& expected = first[static_cast<std::size_t>(k)];
     EXPECT_TRUE(std::equal(expected.begin(), expected.end(), again.parameters().begin())) << k;
   }

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "engine/tick/signals.h"
 #include "tests/support/fake_robot.h"
 #include "tests/support/hume.h"
-#include "tests/support/no_measure.h"
 
 namespace footfall::tests {
 namespace {
@@ -28,21 +28,23 @@ struct Link {
       : behavior(load_inline(asking(filter))),
         signals(behavior->signals),
         model(behavior->robot),
-        machine(*behavior, signals),
-        planners(*behavior, model, latency) {
+        writer(*behavior, signals),
+        machine(*behavior, signals, &model),
+        planners(*behavior, latency) {
     state = standing_state(behavior->robot);
-    model.update(state);
-    planners.start();
-    machine.start(measure);
+    measure();
+    machine.start();
   }
   void tick() {
-    model.update(state);
+    measure();
     planners.deliver(now, machine);
-    machine.tick(now, measure);
-    const std::array<int, 1> stance = {0};
-    planners.observe(stance, machine.parameters(), behavior->robot.period_s());
-    planners.take(now, machine);
+    machine.tick(now);
+    planners.post(now, machine);
     ++now;
+  }
+  void measure() {
+    model.update(state);
+    writer.write_measured(0.0, model, {});
   }
   double predicted(int axis) const {
     return signals[behavior->layout.planner[0].predicted_vel + axis];
@@ -51,9 +53,9 @@ struct Link {
   std::unique_ptr<behaviors::Behavior> behavior;
   core::SignalTable signals;
   model::ControlModel model;
+  engine::SignalWriter writer;
   behaviors::Machine machine;
   engine::PlannerLink planners;
-  NoMeasure measure;
   model::State state;
   std::int64_t now = 0;
 };

@@ -19,24 +19,28 @@ class Safety : public testing::Test {
   engine::SafetyFilter filter{robot};
 };
 
-TEST_F(Safety, WhatIsNotFiniteBecomesZeroAndIsReported) {
+TEST_F(Safety, OneTorqueThatIsNotFiniteMakesAllZeroAndIsReported) {
   hal::Commands commands;
   commands.tau = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                   -std::numeric_limits<double>::infinity(), 1.0};
-  const engine::SafetyFindings findings = filter.filter(commands);
+  const engine::FaultFindings findings = filter.filter(commands);
   EXPECT_TRUE(findings.has(Fault::non_finite));
   EXPECT_FALSE(findings.has(Fault::torque_limit));
   EXPECT_EQ(commands.tau[0], 0.0);
   EXPECT_EQ(commands.tau[1], 0.0);
   EXPECT_EQ(commands.tau[2], 0.0);
-  EXPECT_EQ(commands.tau[3], 1.0);
+  EXPECT_EQ(commands.tau[3], 0.0);
 }
 
 TEST_F(Safety, TorquesAreClampedToEachJointsOwnLimit) {
   hal::Commands commands;
   commands.tau = {70.0, 70.0, -170.0, -70.0, 0.0, 99.9};
-  const engine::SafetyFindings findings = filter.filter(commands);
+  const engine::FaultFindings findings = filter.filter(commands);
   EXPECT_TRUE(findings.has(Fault::torque_limit));
+  const engine::FaultPlace& worst = findings.place[static_cast<std::size_t>(Fault::torque_limit)];
+  EXPECT_EQ(worst.joint, 2);  // asked for 70 Nm too much, the others for 20
+  EXPECT_EQ(worst.value, -170.0);
+  EXPECT_EQ(worst.excess, 70.0);
   const std::array<double, 6> wanted = {50.0, 70.0, -100.0, -50.0, 0.0, 99.9};
   for (std::size_t j = 0; j < 6; ++j) EXPECT_EQ(commands.tau[j], wanted[j]) << j;
 }
@@ -76,7 +80,7 @@ TEST_F(Safety, LimitedStepsNeverExceedTheBoundByABitAndReachWhatIsAskedFor) {
       const auto ticks = static_cast<int>(std::ceil(away / bound * (1.0 + 1e-12)));
       for (int k = 1; k <= ticks; ++k) {
         for (std::size_t j = 0; j < 6; ++j) sent.tau[j] = wanted;
-        const engine::SafetyFindings findings = limited.filter(sent, true);
+        const engine::FaultFindings findings = limited.filter(sent, true);
         EXPECT_FALSE(findings.has(Fault::torque_step));
         EXPECT_EQ(limited.held_back(), sent.tau[0] != wanted);
         for (std::size_t j = 0; j < 6; ++j) {
@@ -107,7 +111,7 @@ TEST_F(Safety, WithoutABoundNothingIsHeldBackAndWhatIsNotFiniteIsLetGoAtOnce) {
 TEST_F(Safety, AStandingRobotIsInOrder) {
   model::ControlModel model(robot);
   model.update(standing_state(robot));
-  EXPECT_FALSE(filter.check_state({}, model).any);
+  EXPECT_FALSE(filter.check_state({}, {}, model).any);
 }
 
 TEST_F(Safety, HeightIsCountedFromTheLowestContactPoint) {
@@ -115,13 +119,13 @@ TEST_F(Safety, HeightIsCountedFromTheLowestContactPoint) {
   model::State state = standing_state(robot);
   state.p_WB[2] += 10.0;  // on a roof
   model.update(state);
-  EXPECT_FALSE(filter.check_state({}, model).any);
+  EXPECT_FALSE(filter.check_state({}, {}, model).any);
   for (const std::size_t leg : {0U, 3U}) {
     state.q[leg + 1] = -1.4;
     state.q[leg + 2] = 2.8;
   }
   model.update(state);
-  EXPECT_TRUE(filter.check_state({}, model).has(Fault::fall));
+  EXPECT_TRUE(filter.check_state({}, {}, model).has(Fault::fall));
 }
 
 TEST_F(Safety, AJointBeyondItsLimitIsReported) {
@@ -129,7 +133,7 @@ TEST_F(Safety, AJointBeyondItsLimitIsReported) {
   model::State state = standing_state(robot);
   state.q[2] = robot.joints[2].position_max + 1e-6;
   model.update(state);
-  const engine::SafetyFindings findings = filter.check_state({}, model);
+  const engine::FaultFindings findings = filter.check_state({}, {}, model);
   EXPECT_TRUE(findings.has(Fault::joint_limit));
   EXPECT_FALSE(findings.has(Fault::fall));
 }

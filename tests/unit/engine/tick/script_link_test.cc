@@ -10,7 +10,6 @@
 
 #include "behaviors/loader.h"
 #include "tests/support/allocation_guard.h"
-#include "tests/support/no_measure.h"
 
 namespace footfall::tests {
 namespace {
@@ -33,14 +32,14 @@ class Scripted {
     signals = behavior->signals;
     machine_ = std::make_unique<behaviors::Machine>(*behavior, signals);
     link = std::make_unique<engine::ScriptLink>(*behavior, behaviors::ScriptSettings{});
-    machine_->start(measure_);
+    machine_->start();
   }
   ~Scripted() { std::filesystem::remove_all(folder_); }
 
   bool tick(bool wait = true) {
     if (wait) link->wait();
     link->deliver(*machine_);
-    machine_->tick(now_++, measure_);
+    machine_->tick(now_++);
     return link->post(*machine_, signals.values(), 0.0);
   }
   void raise(const char* event) { machine_->raise(behavior->find_event(event)); }
@@ -56,7 +55,6 @@ class Scripted {
  private:
   std::filesystem::path folder_;
   std::unique_ptr<behaviors::Machine> machine_;
-  NoMeasure measure_;
   std::int64_t now_ = 0;
 };
 

@@ -1,0 +1,48 @@
+// Control specs at rest; see control_set.h.
+#include "behaviors/compiled/control_set.h"
+
+#include <algorithm>
+
+#include "core/index.h"
+
+namespace footfall::behaviors {
+
+void fill_control_set(const Behavior& behavior, const ControlSpec& spec, tasks::ControlSet& set) {
+  set = {};
+  set.contact_count = static_cast<int>(spec.contacts.size());
+  std::copy(spec.contacts.begin(), spec.contacts.end(), set.contacts.begin());
+  for (int k = spec.tasks.first; k < spec.tasks.end(); ++k) {
+    const TaskSpec& task = behavior.tasks[at(k)];
+    tasks::TaskCommand& command = set.tasks[at(set.task_count++)];
+    command.instance = task.instance;
+    command.type = task.type;
+    command.point = task.point;
+    command.frame = task.frame;
+    command.priority = task.priority;
+    command.first_axis = set.axis_count;
+    command.axis_count = task.axes.count;
+    for (int a = task.axes.first; a < task.axes.end(); ++a) {
+      set.axes[at(set.axis_count++)].axis = behavior.axes[at(a)].axis;
+    }
+  }
+  for (int k = spec.internals.first; k < spec.internals.end(); ++k) {
+    const InternalSpec& internal = behavior.internals[at(k)];
+    set.internals[at(set.internal_count++)] = {internal.instance, internal.contact_a,
+                                               internal.contact_b, 0.0, 0.0};
+  }
+}
+
+tasks::ControllerSizes controller_sizes(const Behavior& behavior) {
+  tasks::ControllerSizes sizes;
+  sizes.task_instances = std::max<int>(1, static_cast<int>(behavior.task_instances.size()));
+  sizes.contacts = std::max<int>(1, static_cast<int>(behavior.robot.contacts.size()));
+  sizes.task_rows = 0;
+  for (const TaskInstance& task : behavior.task_instances) {
+    sizes.task_rows += tasks::info(task.type).axis_count(behavior.robot.joint_count());
+  }
+  sizes.task_rows = std::clamp(sizes.task_rows, 1, core::kMaxAxes);
+  sizes.levels = std::max(1, sizes.task_instances);
+  return sizes;
+}
+
+}  // namespace footfall::behaviors

@@ -1,0 +1,16 @@
+// A control spec as the whole-body controller takes it, at rest: references, gains and internal
+// forces are 0. For questions about a law that is not in force: ranks, torques at rest.
+#pragma once
+
+#include "behaviors/compiled/behavior.h"
+#include "tasks/active_set.h"
+#include "tasks/whole_body_controller.h"
+
+namespace footfall::behaviors {
+
+void fill_control_set(const Behavior& behavior, const ControlSpec& spec, tasks::ControlSet& set);
+
+// Capacities that a behavior needs at worst, for a whole-body controller.
+tasks::ControllerSizes controller_sizes(const Behavior& behavior);
+
+}  // namespace footfall::behaviors

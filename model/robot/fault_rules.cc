@@ -1,0 +1,79 @@
+// The table of faults; see fault_rules.h.
+#include "model/robot/fault_rules.h"
+
+#include <array>
+
+namespace footfall::model {
+namespace {
+
+using core::Fault;
+using core::Reaction;
+
+constexpr std::string_view kEnds = "the run ends in any case";
+constexpr std::string_view kNoNumber = "no torque can be computed";
+constexpr std::string_view kBlind = "the state of the robot is unknown";
+
+constexpr std::array<FaultRule, core::kFaultCount> kRules = {{
+    {Fault::fall, "torso too low, tilted too far, or a body but a foot touches",
+     Reaction::safe_state, kEnds},
+    {Fault::non_finite, "a measured state or a torque is not a number", Reaction::safe_stop,
+     kNoNumber},
+    {Fault::torque_limit,
+     "a torque asked for is at or beyond the joint's limit",
+     Reaction::keep_going,
+     {}},
+    {Fault::torque_step,
+     "a joint's torque changes by more than `limits.torque_step` in a tick",
+     Reaction::keep_going,
+     {}},
+    {Fault::joint_limit, "a joint is beyond its position limits", Reaction::keep_going, {}},
+    {Fault::swing_too_long,
+     "a foot is in the air for longer than `limits.swing` while stepping",
+     Reaction::safe_stop,
+     {}},
+    {Fault::simulator_warning, "the backend warned or reset itself", Reaction::safe_state, kEnds},
+    {Fault::sensor_stale, "a read brings no new data", Reaction::keep_going, {}},
+    {Fault::imu_stale, "the IMU's data are old", Reaction::keep_going, {}},
+    {Fault::mocap_stale, "motion capture's data are old", Reaction::keep_going, {}},
+    {Fault::tick_overrun, "`limits.overruns` ticks in a row begin late", Reaction::keep_going, {}},
+    {Fault::planner_late, "a plan's deadline passes without an answer", Reaction::keep_going, {}},
+    {Fault::execution, "an `error.execution` of the statechart", Reaction::keep_going, {}},
+    {Fault::event_overflow,
+     "an event or a script's request finds its queue full",
+     Reaction::keep_going,
+     {}},
+    {Fault::rank_loss,
+     "a task has less rank than in the nominal posture",
+     Reaction::keep_going,
+     {}},
+    {Fault::no_estimate, "the estimator cannot give a state", Reaction::safe_stop, kBlind},
+}};
+
+constexpr bool in_order() {
+  for (std::size_t f = 0; f < kRules.size(); ++f) {
+    if (static_cast<std::size_t>(kRules[f].fault) != f) return false;
+  }
+  return true;
+}
+static_assert(in_order());
+
+}  // namespace
+
+std::span<const FaultRule> fault_rules() { return kRules; }
+
+std::string why_never(const RobotDescription& robot, Fault fault) {
+  switch (fault) {
+    case Fault::imu_stale:
+      return robot.sensors.imu_site.empty() ? "it has no `sensors: {imu: ...}`" : "";
+    case Fault::mocap_stale:
+      return robot.sensors.mocap_sites.empty() ? "it has no `sensors: {mocap: ...}`" : "";
+    case Fault::torque_step:
+      return robot.torque_step_limit > 0.0 ? "" : "it has no `limits: {torque_step: ...}`";
+    case Fault::swing_too_long:
+      return robot.contacts.empty() ? "it has no `contacts`" : "";
+    default:
+      return {};
+  }
+}
+
+}  // namespace footfall::model
