@@ -1,7 +1,14 @@
 // The table of faults; see fault_rules.h.
 #include "model/robot/fault_rules.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
+#include <vector>
+
+#include "core/yaml/value_reader.h"
+#include "model/robot/keys.h"
 
 namespace footfall::model {
 namespace {
@@ -13,7 +20,7 @@ constexpr std::string_view kEnds = "the run ends in any case";
 constexpr std::string_view kNoNumber = "no torque can be computed";
 constexpr std::string_view kBlind = "the state of the robot is unknown";
 
-constexpr std::array<FaultRule, core::kFaultCount> kRules = {{
+constexpr auto kRules = std::to_array<FaultRule>({
     {Fault::fall, "torso too low, tilted too far, or a body but a foot touches",
      Reaction::safe_state, kEnds},
     {Fault::non_finite, "a measured state or a torque is not a number", Reaction::safe_stop,
@@ -47,7 +54,7 @@ constexpr std::array<FaultRule, core::kFaultCount> kRules = {{
      Reaction::keep_going,
      {}},
     {Fault::no_estimate, "the estimator cannot give a state", Reaction::safe_stop, kBlind},
-}};
+});
 
 constexpr bool in_order() {
   for (std::size_t f = 0; f < kRules.size(); ++f) {
@@ -55,7 +62,29 @@ constexpr bool in_order() {
   }
   return true;
 }
-static_assert(in_order());
+static_assert(kRules.size() == std::size_t{core::kFaultCount} && in_order());
+
+void set_reaction(const core::YamlEntry& entry, Fault fault, Reaction reaction,
+                  RobotDescription& robot, core::Diagnostics& diagnostics) {
+  const auto index = static_cast<std::size_t>(fault);
+  const std::string_view refusing = kRules[index].refusing;
+  const std::string never = why_never(robot, fault);
+  if (!never.empty()) {
+    diagnostics.error(entry.key_mark, "impossible-fault",
+                      fmt::format("this robot never has '{}': {}", entry.key, never));
+  } else if (reaction == Reaction::keep_going && !refusing.empty()) {
+    diagnostics.error(entry.value.mark, "refused-reaction",
+                      fmt::format("'{}' cannot continue: {}; it is safe_state or safe_stop",
+                                  entry.key, refusing));
+  } else {
+    robot.reactions[index] = reaction;
+  }
+}
+
+std::string hint_or_list(std::string_view word, const std::vector<std::string>& names) {
+  const std::string hint = core::did_you_mean(word, names);
+  return hint.empty() ? fmt::format(", there are {}", fmt::join(names, ", ")) : hint;
+}
 
 }  // namespace
 
@@ -73,6 +102,24 @@ std::string why_never(const RobotDescription& robot, Fault fault) {
       return robot.contacts.empty() ? "it has no `contacts`" : "";
     default:
       return {};
+  }
+}
+
+void read_reactions(const core::YamlNode& node, RobotDescription& robot,
+                    core::Diagnostics& diagnostics) {
+  if (!core::expect_map(node, "a map of reactions by fault", diagnostics)) return;
+  std::vector<std::string> names;
+  for (const FaultRule& rule : kRules) names.emplace_back(core::fault_name(rule.fault));
+  for (const core::YamlEntry& entry : node.entries) {
+    const auto found = std::find(names.begin(), names.end(), entry.key);
+    const auto choice = core::read_choice(entry.value, kReactions, diagnostics, "a reaction");
+    if (found == names.end()) {
+      diagnostics.error(entry.key_mark, "unknown-fault",
+                        fmt::format("no fault '{}'{}", entry.key, hint_or_list(entry.key, names)));
+    } else if (choice) {
+      set_reaction(entry, static_cast<Fault>(found - names.begin()), static_cast<Reaction>(*choice),
+                   robot, diagnostics);
+    }
   }
 }
 

@@ -24,4 +24,8 @@ std::span<const FaultRule> fault_rules();
 // Why the robot can never have the fault, as the file describes it; empty: it can.
 std::string why_never(const RobotDescription& robot, core::Fault fault);
 
+// The robot file's `faults`, when the rest of the robot is known. Problems go to diagnostics.
+void read_reactions(const core::YamlNode& node, RobotDescription& robot,
+                    core::Diagnostics& diagnostics);
+
 }  // namespace footfall::model

@@ -47,7 +47,7 @@ class RobotLoader {
     if (const YamlNode* node = root.find("sensors")) read_sensors(*node);
     if (const YamlNode* node = root.find("symmetry")) read_symmetry(*node);
     if (const YamlNode* node = root.find("limits")) read_limits(*node);
-    if (const YamlNode* node = root.find("faults")) read_faults(*node);
+    if (const YamlNode* node = root.find("faults")) read_reactions(*node, robot_, diagnostics_);
     return std::move(robot_);
   }
 
@@ -345,47 +345,6 @@ class RobotLoader {
                                .value_or(robot_.swing_limit);
     }
     read("reload_watch", core::kTime, 60.0, "a time of at most 60 s", robot_.reload_watch);
-  }
-
-  void read_faults(const YamlNode& node) {
-    if (!core::expect_map(node, "a map of reactions by fault", diagnostics_)) return;
-    std::vector<std::string> names;
-    for (int i = 0; i < core::kFaultCount; ++i) {
-      names.emplace_back(core::fault_name(static_cast<core::Fault>(i)));
-    }
-    for (const YamlEntry& entry : node.entries) {
-      const auto found = std::find(names.begin(), names.end(), entry.key);
-      const auto choice = core::read_choice(entry.value, kReactions, diagnostics_, "a reaction");
-      if (found == names.end()) {
-        diagnostics_.error(
-            entry.key_mark, "unknown-fault",
-            fmt::format("no fault '{}'{}", entry.key, hint_or_list(entry.key, names)));
-      } else if (choice) {
-        set_reaction(entry, static_cast<core::Fault>(found - names.begin()),
-                     static_cast<core::Reaction>(*choice));
-      }
-    }
-  }
-
-  void set_reaction(const YamlEntry& entry, core::Fault fault, core::Reaction reaction) {
-    const auto index = static_cast<std::size_t>(fault);
-    const std::string_view refusing = fault_rules()[index].refusing;
-    const std::string never = why_never(robot_, fault);
-    if (!never.empty()) {
-      diagnostics_.error(entry.key_mark, "impossible-fault",
-                         fmt::format("this robot never has '{}': {}", entry.key, never));
-    } else if (reaction == core::Reaction::keep_going && !refusing.empty()) {
-      diagnostics_.error(entry.value.mark, "refused-reaction",
-                         fmt::format("'{}' cannot continue: {}; it is safe_state or safe_stop",
-                                     entry.key, refusing));
-    } else {
-      robot_.reactions[index] = reaction;
-    }
-  }
-
-  static std::string hint_or_list(std::string_view word, const std::vector<std::string>& names) {
-    const std::string hint = core::did_you_mean(word, names);
-    return hint.empty() ? fmt::format(", there are {}", fmt::join(names, ", ")) : hint;
   }
 
   void report_unknown(const YamlNode& node, std::string_view what,

@@ -299,6 +299,7 @@ TEST(MachineReference, FromTheStanceFootAKeptReferenceStaysWhereItIsInTheWorld) 
            "0.95 m, over: 100 ms}}}}\n"),
       Body::standing);
   run.state.q[4] -= 0.4;  // the left foot is on a step
+  run.model->update(run.state);
   run.carry_com(2, 1.0);
   const double above_right = 1.0 - run.model->point_position(0)[2];
   const double above_left = 1.0 - run.model->point_position(1)[2];
