@@ -48,13 +48,6 @@ LoopState ControlLoop::tick() noexcept {
   return state();
 }
 
-void ControlLoop::late(bool late) noexcept {
-  overruns_ = late ? overruns_ + 1 : 0;
-  if (!late) return;
-  faults_.add(core::Fault::tick_overrun);
-  if (overruns_ == behavior_.robot.overruns) react(core::Fault::tick_overrun);
-}
-
 bool ControlLoop::sense() noexcept {
   outside_.wait();
   fresh_ = hardware_.read(sensors_);

@@ -69,7 +69,7 @@ void Outside::replay(std::int64_t tick, behaviors::Machine& machine) noexcept {
   trace_->planned.clear();
   planners_.deliver(tick, machine, &trace_->planned, false);
   for (const behaviors::PlanAnswer& plan : trace_->plans) machine.deliver(plan);
-  for (const ParameterWrite& write : trace_->writes) {
+  for (const behaviors::SlotValue& write : trace_->writes) {
     machine.parameters()[static_cast<std::size_t>(write.slot)] = write.value;
   }
   for (const int event : trace_->events) machine.raise(event);
