@@ -22,6 +22,11 @@ SUFFIXES = ("", ".h", ".cc", ".py", ".yaml", ".md")
 ELSEWHERE = ("tests/language/mistakes", "tests/runs/docs/check_layers_test.py")  # their paths are not of this tree
 
 
+# Files that the example changes of docs/adding_*.md make.
+EXAMPLES = {name for patch in ROOT.glob("tests/changes/*.patch")
+            for name in re.findall(r"^\+\+\+ b/(\S+)", patch.read_text(encoding="utf-8"), re.M)}
+
+
 def slug(heading):
     """A heading's anchor, as GitHub makes it."""
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
@@ -39,7 +44,7 @@ def alternatives(path):
 def exists(path):
     """Whether the repository has the path, also without its suffix or as a pattern."""
     path = re.sub(r"[.]+$", "", path).rstrip("/").replace("NAME", "*")
-    return all(any(any(ROOT.glob(one + suffix)) for suffix in SUFFIXES) for one in alternatives(path))
+    return all(one in EXAMPLES or any(any(ROOT.glob(one + suffix)) for suffix in SUFFIXES) for one in alternatives(path))
 
 
 def paragraph_exists(document, number):

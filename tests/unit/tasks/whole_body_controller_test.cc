@@ -243,7 +243,8 @@ TEST_F(Controller, FromTheStanceFeetTheTorquesAreThoseOfTheWorldWithTheReference
 }
 
 TEST_F(Controller, LimitsAreReported) {
-  tasks::WholeBodyController limited(model_, std::vector<double>(6, 1.0), {4, 16, 2, 2}, 1e-3);
+  tasks::WholeBodyController limited(model_, std::vector<double>(6, 1.0), {4, 16, 2, 2},
+                                     1.0 / 1500.0);
   control_.primary = single_;
   limited.compute(control_, 0, nullptr, tau_.data());
   EXPECT_TRUE(limited.result().limited);
