@@ -28,8 +28,10 @@ endfunction()
 # (preset release); the other presets see that each file includes what it uses.
 set(FOOTFALL_PCH_offline <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory>
   <optional> <set> <span> <string> <string_view> <utility> <vector> <fmt/format.h> <nlohmann/json.hpp>)
+set(FOOTFALL_PCH_offline_libraries fmt::fmt nlohmann_json::nlohmann_json)
 set(FOOTFALL_PCH_tests <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <cmath> <filesystem> <fstream> <functional>
   <map> <memory> <optional> <string> <vector>)
+set(FOOTFALL_PCH_tests_libraries GTest::gtest GTest::gmock fmt::fmt)
 
 # footfall_set_level(TARGET offline|tests): -O1 for what runs outside the tick, -O0 for the code of the tests; both in
 # Release only. NDEBUG and every other flag are the same everywhere, because inline functions are shared.
@@ -44,13 +46,15 @@ function(footfall_set_level target level)
   if(NOT TARGET ${source})
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${source}.cc CONTENT "// Only its precompiled header is used.\n")
     add_library(${source} OBJECT EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/${source}.cc)
-    target_link_libraries(${source} PRIVATE fmt::fmt nlohmann_json::nlohmann_json)
+    target_link_libraries(${source} PRIVATE ${FOOTFALL_PCH_${level}_libraries})
     target_compile_features(${source} PRIVATE cxx_std_20)
+    set_target_properties(${source} PROPERTIES UNITY_BUILD OFF)
     target_compile_options(${source} PRIVATE $<$<CONFIG:Release>:${flag_${level}}>)
     footfall_set_warnings(${source})
     footfall_set_sanitizers(${source})
     target_precompile_headers(${source} PRIVATE ${FOOTFALL_PCH_${level}})
   endif()
+  target_compile_options(${target} PRIVATE -fPIC)  # as the header's, also in programs
   target_precompile_headers(${target} REUSE_FROM ${source})
 endfunction()
 

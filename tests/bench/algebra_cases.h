@@ -39,10 +39,10 @@ struct Algebra {
       }
       c.naive = dense_problem(*c.model, c.solver->problem());
       c.solver->solve();
-      const Eigen::VectorXd expected = naive_wbosc(c.naive).tau;
-      const Eigen::Map<const Eigen::VectorXd> tau(c.solver->solution().tau.data(), 6);
-      torque_difference = std::max(torque_difference, (tau - expected).cwiseAbs().maxCoeff() /
-                                                          expected.cwiseAbs().maxCoeff());
+      const Matrix expected = naive_wbosc(c.naive).tau;
+      const Matrix tau = Matrix::vector(c.solver->solution().tau.data(), 6);
+      torque_difference =
+          std::max(torque_difference, (tau - expected).max_abs() / expected.max_abs());
       cases.push_back(std::move(c));
     }
   }

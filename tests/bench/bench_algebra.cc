@@ -16,16 +16,14 @@
 namespace footfall::tests {
 namespace {
 
-using Eigen::VectorXd;
-
 constexpr int kStatesOfEachStance = 1000;
 
 struct Largest {
   double task = 0.0, dense = 0.0, internal = 0.0, lower = 0.0, naive = 0.0;
 };
 
-double relative(const VectorXd& a, const VectorXd& b, double scale) {
-  return a.size() == 0 ? 0.0 : (a - b).cwiseAbs().maxCoeff() / std::max(scale, 1e-3);
+double relative(const Matrix& a, const Matrix& b, double scale) {
+  return a.size() == 0 ? 0.0 : (a - b).max_abs() / std::max(scale, 1e-3);
 }
 
 class AlgebraCheck {
@@ -41,16 +39,16 @@ class AlgebraCheck {
     const int first = solver_.problem().level_end[0];
     solver_.solve();
     const NaiveProblem p = dense_problem(model_, solver_.problem());
-    const VectorXd tau = torque();
-    const VectorXd qdd = accelerate(p, tau);
-    const double scale = qdd.cwiseAbs().maxCoeff();
-    const VectorXd real = task_acceleration(p, qdd);
-    const VectorXd commanded = rows(solver_.problem().u);
+    const Matrix tau = torque();
+    const Matrix qdd = accelerate(p, tau);
+    const double scale = qdd.max_abs();
+    const Matrix real = task_acceleration(p, qdd);
+    const Matrix commanded = rows(solver_.problem().u);
     largest.task = std::max(largest.task, relative(real.head(first), commanded.head(first), scale));
     largest.dense =
         std::max(largest.dense, relative(real, rows(solver_.solution().achieved), scale));
-    const VectorXd naive = naive_wbosc(p).tau;
-    largest.naive = std::max(largest.naive, relative(tau, naive, naive.cwiseAbs().maxCoeff()));
+    const Matrix naive = naive_wbosc(p).tau;
+    largest.naive = std::max(largest.naive, relative(tau, naive, naive.max_abs()));
     if (!dual) return;
     solver_.problem().F_int[0] += 100.0;
     solver_.solve();
@@ -59,27 +57,26 @@ class AlgebraCheck {
       solver_.problem().u[static_cast<std::size_t>(i)] += 100.0;
     }
     solver_.solve();
-    const VectorXd pushed = accelerate(p, torque());
-    largest.lower =
-        std::max(largest.lower, relative(task_acceleration(p, pushed).head(first),
-                                         commanded.head(first), pushed.cwiseAbs().maxCoeff()));
+    const Matrix pushed = accelerate(p, torque());
+    largest.lower = std::max(largest.lower, relative(task_acceleration(p, pushed).head(first),
+                                                     commanded.head(first), pushed.max_abs()));
   }
 
   Largest largest;
 
  private:
-  VectorXd torque() const { return Eigen::Map<const VectorXd>(solver_.solution().tau.data(), 6); }
-  VectorXd rows(const std::vector<double>& v) {
-    return Eigen::Map<const VectorXd>(v.data(), solver_.problem().task_rows);
+  Matrix torque() const { return Matrix::vector(solver_.solution().tau.data(), 6); }
+  Matrix rows(const std::vector<double>& v) {
+    return Matrix::vector(v.data(), solver_.problem().task_rows);
   }
-  static VectorXd accelerate(const NaiveProblem& p, const VectorXd& tau) {
-    return dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau).qdd;
+  static Matrix accelerate(const NaiveProblem& p, const Matrix& tau) {
+    return dense_solve(p, tau).qdd;
   }
-  VectorXd task_acceleration(const NaiveProblem& p, const VectorXd& qdd) {
-    VectorXd a(solver_.problem().task_rows);
-    Eigen::Index row = 0;
+  Matrix task_acceleration(const NaiveProblem& p, const Matrix& qdd) {
+    Matrix a(solver_.problem().task_rows);
+    int row = 0;
     for (const NaiveLevel& level : p.levels) {
-      a.segment(row, level.J.rows()) = level.J * qdd + level.J_bias;
+      a.set_block(row, 0, level.J * qdd + level.J_bias);
       row += level.J.rows();
     }
     return a;

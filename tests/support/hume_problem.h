@@ -1,7 +1,6 @@
 // WBOSC problems of Hume in the two stances of [Kim16] Table I, filled by hand from the model.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>

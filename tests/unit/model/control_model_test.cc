@@ -3,39 +3,31 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
 #include "tests/support/allocation_guard.h"
 #include "tests/support/hume.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 class ControlModelOfHume : public testing::Test {
  protected:
-  MatrixXd jacobian(const model::Kinematics3& k) const {
-    return Eigen::Map<const RowMajor>(k.jacobian.data(), 3, model_.nv());
+  Matrix jacobian(const model::Kinematics3& k) const {
+    return Matrix::of_rows(k.jacobian.data(), 3, model_.nv());
   }
-  MatrixXd mass_matrix() const {
-    RowMajor A(12, 12);
+  Matrix mass_matrix() const {
+    Matrix A(12, 12);  // symmetric: rows or columns first
     model_.mass_matrix(A.data());
     return A;
   }
-  VectorXd bias() const { return Eigen::Map<const VectorXd>(model_.bias().data(), 12); }
-  VectorXd gravity() const {
-    VectorXd g(12);
+  Matrix bias() const { return Matrix::vector(model_.bias().data(), 12); }
+  Matrix gravity() const {
+    Matrix g(12);
     model_.gravity_force(g.data());
     return g;
   }
-  static VectorXd velocity_of(const model::State& s) {
-    VectorXd v(12);
+  static Matrix velocity_of(const model::State& s) {
+    Matrix v(12);
     for (int k = 0; k < 3; ++k) v(k) = s.v_WB[static_cast<std::size_t>(k)];
     for (int k = 0; k < 3; ++k) v(3 + k) = s.w_WB_B[static_cast<std::size_t>(k)];
     for (int k = 0; k < 6; ++k) v(6 + k) = s.qd[static_cast<std::size_t>(k)];
@@ -43,15 +35,15 @@ class ControlModelOfHume : public testing::Test {
   }
   double kinetic_energy(const model::State& s) {
     model_.update(s);
-    const VectorXd v = velocity_of(s);
-    return 0.5 * v.dot(mass_matrix() * v);
+    const Matrix v = velocity_of(s);
+    return 0.5 * dot(v, mass_matrix() * v);
   }
   // J̇q̇ by central differences along the motion at constant generalised velocity.
   template <typename Pick>
-  Vector3d differenced_bias(const model::State& s, Pick pick) {
+  Matrix differenced_bias(const model::State& s, Pick pick) {
     constexpr double h = 1e-4;
     model_.update(integrated(s, h, 6));
-    const MatrixXd after = jacobian(pick());
+    const Matrix after = jacobian(pick());
     model_.update(integrated(s, -h, 6));
     return (after - jacobian(pick())) / (2 * h) * velocity_of(s);
   }
@@ -89,11 +81,11 @@ TEST_F(ControlModelOfHume, BiasAccelerationsAreTheDerivativeOfTheJacobians) {
     const auto com = model_.com().bias;
     const auto base = model_.base_rotation().bias;
     const auto knee = model_.point(5).bias;
-    const Vector3d com_fd = differenced_bias(
+    const Matrix com_fd = differenced_bias(
         s, [&]() -> auto& { return model_.com(); });
-    const Vector3d base_fd = differenced_bias(
+    const Matrix base_fd = differenced_bias(
         s, [&]() -> auto& { return model_.base_rotation(); });
-    const Vector3d knee_fd = differenced_bias(
+    const Matrix knee_fd = differenced_bias(
         s, [&]() -> auto& { return model_.point(5); });
     for (int k = 0; k < 3; ++k) {
       const auto q = static_cast<std::size_t>(k);
@@ -147,7 +139,7 @@ TEST_F(ControlModelOfHume, GravityForceIsTheGradientOfPotentialEnergy) {
   for (int i = 0; i < 30; ++i) {
     const model::State s = random_state(robot_, random_);
     model_.update(s);
-    const double power = gravity().dot(velocity_of(s));
+    const double power = dot(gravity(), velocity_of(s));
     model_.update(integrated(s, h, 6));
     const double after = model_.mass() * model_.gravity() * model_.com().position[2];
     model_.update(integrated(s, -h, 6));
@@ -162,7 +154,7 @@ TEST_F(ControlModelOfHume, BiasAtRestIsGravityAlone) {
     s.v_WB = s.w_WB_B = {};
     s.qd = {};
     model_.update(s);
-    EXPECT_LE((bias() - gravity()).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_LE((bias() - gravity()).max_abs(), 1e-11);
   }
 }
 
@@ -172,21 +164,21 @@ TEST_F(ControlModelOfHume, FreeFlightConservesEnergy) {
   for (int i = 0; i < 30; ++i) {
     const model::State s = random_state(robot_, random_);
     model_.update(s);
-    const double power = -gravity().dot(velocity_of(s));
-    const VectorXd a = -mass_matrix().partialPivLu().solve(bias());
+    const double power = -dot(gravity(), velocity_of(s));
+    const Matrix a = -solve(mass_matrix(), bias());
     const auto moved = [&](double dt) {
       model::State mean = s;  // velocity at the middle of the interval: second order
       model::State end = s;
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto q = static_cast<Eigen::Index>(k);
+        const auto q = static_cast<int>(k);
         mean.v_WB[k] += 0.5 * dt * a(q);
         mean.w_WB_B[k] += 0.5 * dt * a(3 + q);
         end.v_WB[k] += dt * a(q);
         end.w_WB_B[k] += dt * a(3 + q);
       }
       for (std::size_t k = 0; k < 6; ++k) {
-        mean.qd[k] += 0.5 * dt * a(6 + static_cast<Eigen::Index>(k));
-        end.qd[k] += dt * a(6 + static_cast<Eigen::Index>(k));
+        mean.qd[k] += 0.5 * dt * a(6 + static_cast<int>(k));
+        end.qd[k] += dt * a(6 + static_cast<int>(k));
       }
       const model::State place = integrated(mean, dt, 6);
       end.p_WB = place.p_WB;
@@ -203,15 +195,15 @@ TEST_F(ControlModelOfHume, MomentumIsTheMassMatrixTimesVelocityOfTheBase) {
   for (int i = 0; i < 30; ++i) {
     const model::State s = random_state(robot_, random_);
     model_.update(s);
-    const VectorXd p = (mass_matrix() * velocity_of(s)).head(6);
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(model_.R_WB().data());
-    const Vector3d linear = p.head<3>();
-    Vector3d arm;
+    const Matrix p = (mass_matrix() * velocity_of(s)).head(6);
+    const Matrix R = Matrix::of_rows(model_.R_WB().data(), 3, 3);
+    const Matrix linear = p.head(3);
+    Matrix arm(3);
     for (int k = 0; k < 3; ++k) {
       const auto q = static_cast<std::size_t>(k);
       arm(k) = model_.com().position[q] - s.p_WB[q];
     }
-    const Vector3d angular = R * p.tail<3>() - arm.cross(linear);
+    const Matrix angular = R * p.tail(3) - cross(arm, linear);
     for (int k = 0; k < 3; ++k) {
       const auto q = static_cast<std::size_t>(k);
       EXPECT_NEAR(model_.centroidal_momentum()[q], linear(k), 1e-11);
@@ -224,15 +216,15 @@ TEST_F(ControlModelOfHume, MomentumIsTheMassMatrixTimesVelocityOfTheBase) {
 TEST_F(ControlModelOfHume, WhitenedColumnsMultiplyAsInTheInverseMassMatrix) {
   for (int i = 0; i < 10; ++i) {
     model_.update(random_state(robot_, random_));
-    MatrixXd J(9, 12);
-    J << jacobian(model_.point(0)), jacobian(model_.com()), jacobian(model_.base_rotation());
-    RowMajor padded = RowMajor::Zero(12, 10);
-    padded.leftCols(9) = J.transpose();
+    Matrix J(9, 12);
+    J.set_block(0, 0, jacobian(model_.point(0)));
+    J.set_block(3, 0, jacobian(model_.com()));
+    J.set_block(6, 0, jacobian(model_.base_rotation()));
+    std::vector<double> padded = beside(J.transpose(), Matrix(12)).by_rows();
     model::whiten(model_.factor(), padded.data(), 9, 10);
-    const MatrixXd X = padded.leftCols(9);
-    const MatrixXd expected = J * mass_matrix().partialPivLu().solve(J.transpose());
-    EXPECT_LE((X.transpose() * X - expected).cwiseAbs().maxCoeff(),
-              1e-11 * expected.cwiseAbs().maxCoeff());
+    const Matrix X = Matrix::of_rows(padded.data(), 12, 10).block(0, 0, 12, 9);
+    const Matrix expected = J * solve(mass_matrix(), J.transpose());
+    EXPECT_LE((X.transpose() * X - expected).max_abs(), 1e-11 * expected.max_abs());
   }
 }
 
@@ -243,10 +235,10 @@ TEST_F(ControlModelOfHume, AnAssumedMassErrorScalesTheWholeMassMatrix) {
   const model::State s = random_state(robot_, random_);
   heavy.update(s);
   model_.update(s);
-  RowMajor A(12, 12);
+  Matrix A(12, 12);  // symmetric: rows or columns first
   heavy.mass_matrix(A.data());
   EXPECT_NEAR(heavy.mass(), 1.1 * model_.mass(), 1e-12);
-  EXPECT_LE((A - 1.1 * mass_matrix()).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LE((A - 1.1 * mass_matrix()).max_abs(), 1e-12);
 }
 
 TEST_F(ControlModelOfHume, AnAssumedShiftOfALinkMovesTheCentreOfMassByItsShare) {

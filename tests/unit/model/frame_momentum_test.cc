@@ -2,22 +2,13 @@
 // walking surface against its formula.
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
 #include "model/height_surface.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/hume.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 // Central differences with h = 1e-4: h²/6 times third derivatives (angular speed cubed, up to
 // 40 rad³/s³) is below 1e-7; round-off 1e-16/h far below.
@@ -26,20 +17,19 @@ constexpr double kFrameDifference = 1e-6;
 
 class FramesOfHume : public testing::Test {
  protected:
-  VectorXd velocity_of(const model::State& s) const {
-    VectorXd v(12);
-    for (Eigen::Index k = 0; k < 12; ++k) {
+  Matrix velocity_of(const model::State& s) const {
+    Matrix v(12);
+    for (int k = 0; k < 12; ++k) {
       const auto q = static_cast<std::size_t>(k);
       v(k) = k < 3 ? s.v_WB[q] : k < 6 ? s.w_WB_B[q - 3] : s.qd[q - 6];
     }
     return v;
   }
-  Eigen::MatrixXd jacobian(const model::Kinematics3& k) const {
-    return Eigen::Map<const RowMajor>(k.jacobian.data(), 3, 12);
+  Matrix jacobian(const model::Kinematics3& k) const {
+    return Matrix::of_rows(k.jacobian.data(), 3, 12);
   }
-  static Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-  Matrix3d rotation(int point) const {
-    return Eigen::Map<const RowMajor3>(model_.frame(point).R_WF.data());
+  Matrix orientation(int point) const {
+    return Matrix::of_rows(model_.frame(point).R_WF.data(), 3, 3);
   }
 
   model::RobotDescription robot_ = load_hume();
@@ -52,20 +42,18 @@ TEST_F(FramesOfHume, AFramesAngularVelocityTurnsItsRotation) {
     const model::State s = random_state(robot_, random_);
     for (const int point : {1, 5, 6}) {
       model_.update(s);
-      const Vector3d w = vector(model_.frame(point).angular.velocity);
-      const Vector3d bias = vector(model_.frame(point).angular.bias);
-      const Vector3d rate = jacobian(model_.frame(point).angular) * velocity_of(s);
-      EXPECT_LE((rate - w).cwiseAbs().maxCoeff(), 1e-12);
+      const Matrix w = Matrix::vector(model_.frame(point).angular.velocity);
+      const Matrix bias = Matrix::vector(model_.frame(point).angular.bias);
+      const Matrix rate = jacobian(model_.frame(point).angular) * velocity_of(s);
+      EXPECT_LE((rate - w).max_abs(), 1e-12);
       model_.update(integrated(s, kStep, 6));
-      const Matrix3d after = rotation(point);
-      const Vector3d w_after = jacobian(model_.frame(point).angular) * velocity_of(s);
+      const Matrix after = orientation(point);
+      const Matrix w_after = jacobian(model_.frame(point).angular) * velocity_of(s);
       model_.update(integrated(s, -kStep, 6));
-      const Eigen::AngleAxisd turn(after * rotation(point).transpose());
-      EXPECT_LE((turn.axis() * turn.angle() / (2 * kStep) - w).cwiseAbs().maxCoeff(),
-                kFrameDifference);
-      const Vector3d w_before = jacobian(model_.frame(point).angular) * velocity_of(s);
-      EXPECT_LE(((w_after - w_before) / (2 * kStep) - bias).cwiseAbs().maxCoeff(),
-                kFrameDifference);
+      const Matrix turn = rotation_vector(after * orientation(point).transpose());
+      EXPECT_LE((turn / (2 * kStep) - w).max_abs(), kFrameDifference);
+      const Matrix w_before = jacobian(model_.frame(point).angular) * velocity_of(s);
+      EXPECT_LE(((w_after - w_before) / (2 * kStep) - bias).max_abs(), kFrameDifference);
     }
   }
 }
@@ -73,11 +61,9 @@ TEST_F(FramesOfHume, AFramesAngularVelocityTurnsItsRotation) {
 TEST_F(FramesOfHume, RollPitchAndYawAreThoseOfTheRotation) {
   model_.update(random_state(robot_, random_));
   const auto& rpy = model_.frame(5).rpy;
-  const Matrix3d R =
-      (Eigen::AngleAxisd(rpy[2], Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Vector3d::UnitY()) *
-       Eigen::AngleAxisd(rpy[0], Vector3d::UnitX()))
-          .toRotationMatrix();
-  EXPECT_LE((R - rotation(5)).cwiseAbs().maxCoeff(), 1e-14);
+  const Matrix R = rotation(Matrix::unit(3, 2), rpy[2]) * rotation(Matrix::unit(3, 1), rpy[1]) *
+                   rotation(Matrix::unit(3, 0), rpy[0]);
+  EXPECT_LE((R - orientation(5)).max_abs(), 1e-14);
 }
 
 TEST_F(FramesOfHume, APointOfABodyIsTheBodysOwnFrame) {
@@ -96,8 +82,8 @@ TEST_F(FramesOfHume, AngularMomentumIsItsMatrixTimesTheVelocity) {
     const model::State s = random_state(robot_, random_);
     model_.update(s);
     const auto& h = model_.centroidal_momentum();
-    const Vector3d product = jacobian(model_.angular_momentum()) * velocity_of(s);
-    EXPECT_LE((product - Vector3d(h[3], h[4], h[5])).cwiseAbs().maxCoeff(), 1e-12);
+    const Matrix product = jacobian(model_.angular_momentum()) * velocity_of(s);
+    EXPECT_LE((product - Matrix::vector({h[3], h[4], h[5]})).max_abs(), 1e-12);
   }
 }
 
@@ -105,12 +91,12 @@ TEST_F(FramesOfHume, TheMomentumsBiasIsTheDerivativeOfItsMatrix) {
   for (int i = 0; i < 20; ++i) {
     const model::State s = random_state(robot_, random_);
     model_.update(integrated(s, kStep, 6));
-    const Vector3d after = jacobian(model_.angular_momentum()) * velocity_of(s);
+    const Matrix after = jacobian(model_.angular_momentum()) * velocity_of(s);
     model_.update(integrated(s, -kStep, 6));
-    const Vector3d before = jacobian(model_.angular_momentum()) * velocity_of(s);
+    const Matrix before = jacobian(model_.angular_momentum()) * velocity_of(s);
     model_.update(s);
-    const Vector3d bias = vector(model_.angular_momentum().bias);
-    EXPECT_LE(((after - before) / (2 * kStep) - bias).cwiseAbs().maxCoeff(), kFrameDifference);
+    const Matrix bias = Matrix::vector(model_.angular_momentum().bias);
+    EXPECT_LE(((after - before) / (2 * kStep) - bias).max_abs(), kFrameDifference);
   }
 }
 
@@ -118,14 +104,14 @@ TEST_F(FramesOfHume, TheMomentumsBiasIsTheDerivativeOfItsMatrix) {
 TEST_F(FramesOfHume, FreeFallKeepsTheAngularMomentumWhateverTheJointsDo) {
   for (int i = 0; i < 20; ++i) {
     model_.update(random_state(robot_, random_));
-    RowMajor A(12, 12);
+    Matrix A(12, 12);
     model_.mass_matrix(A.data());
-    VectorXd force = -Eigen::Map<const VectorXd>(model_.bias().data(), 12);
-    for (Eigen::Index j = 6; j < 12; ++j) force(j) += random_.within(50.0);  // joint torques
-    const VectorXd a = A.lu().solve(force);
-    const Vector3d rate =
-        jacobian(model_.angular_momentum()) * a + vector(model_.angular_momentum().bias);
-    EXPECT_LE(rate.cwiseAbs().maxCoeff(), 1e-9);
+    Matrix force = -Matrix::vector(model_.bias().data(), 12);
+    for (int j = 6; j < 12; ++j) force(j) += random_.within(50.0);  // joint torques
+    const Matrix a = solve(A, force);
+    const Matrix rate =
+        jacobian(model_.angular_momentum()) * a + Matrix::vector(model_.angular_momentum().bias);
+    EXPECT_LE(rate.max_abs(), 1e-9);
   }
 }
 

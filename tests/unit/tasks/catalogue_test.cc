@@ -54,8 +54,8 @@ class CatalogueRows : public TaskLaw {};
 TEST_F(CatalogueRows, EveryAxisOfEveryTypeHasARowThatAgreesWithWhatIsMeasured) {
   const model::State s = random_state(robot_, random_);
   model_.update(s);
-  VectorXd v(12);
-  for (Eigen::Index k = 0; k < 12; ++k) {
+  Matrix v(12);
+  for (int k = 0; k < 12; ++k) {
     const auto q = static_cast<std::size_t>(k);
     v(k) = k < 3 ? s.v_WB[q] : k < 6 ? s.w_WB_B[q - 3] : s.qd[q - 6];
   }

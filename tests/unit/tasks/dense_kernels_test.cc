@@ -1,34 +1,29 @@
-// The Householder kernels against their definitions and against Eigen.
+// The Householder kernels against their definitions and against least squares by SVD.
 #include "tasks/solver/dense_kernels.h"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <Eigen/QR>
 #include <numeric>
 #include <vector>
 
 #include "tests/support/hume.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using tasks::Block;
 
 constexpr double kRound = 1e-12;  // 1e-16 times sizes and conditions of about 100
 
-MatrixXd random_matrix(Random& random, int rows, int columns) {
-  MatrixXd m(rows, columns);
-  for (Index i = 0; i < m.size(); ++i) m.data()[i] = random.within(1.0);
+Matrix random_matrix(Random& random, int rows, int columns) {
+  Matrix m(rows, columns);
+  for (int i = 0; i < m.size(); ++i) m.data()[i] = random.within(1.0);
   return m;
 }
 
 struct Factored {
-  RowMajor x;
+  Matrix x;
   std::vector<int> order;
   std::vector<double> norm2, v, beta;
   tasks::Reflectors keep;
@@ -37,31 +32,33 @@ struct Factored {
 };
 
 // Factors the first `factor` columns of m; the rest is carried along.
-Factored factor_columns(const MatrixXd& m, int factor, const tasks::RankRule& rule = {}) {
+Factored factor_columns(const Matrix& m, int factor, const tasks::RankRule& rule = {}) {
   Factored f;
-  const int rows = static_cast<int>(m.rows()), columns = static_cast<int>(m.cols());
-  f.x = m;
+  const int rows = m.rows(), columns = m.cols();
+  std::vector<double> x = m.by_rows();
   f.order.resize(static_cast<std::size_t>(columns));
   std::iota(f.order.begin(), f.order.end(), 0);
-  for (Index c = 0; c < m.cols(); ++c) f.norm2.push_back(m.col(c).squaredNorm());
+  for (int c = 0; c < m.cols(); ++c) f.norm2.push_back(m.col(c).squared_norm());
   f.v.resize(static_cast<std::size_t>(rows * rows));
   f.beta.resize(static_cast<std::size_t>(rows));
   f.keep = {f.v.data(), f.beta.data(), rows, 0};
   std::vector<double> work(static_cast<std::size_t>(rows + columns));
-  f.rank = tasks::pivoted_qr({f.x.data(), columns}, {0, rows, 0, factor, columns, rows}, rule,
+  f.rank = tasks::pivoted_qr({x.data(), columns}, {0, rows, 0, factor, columns, rows}, rule,
                              f.order.data(), f.norm2.data(), &f.keep, &f.condition, work.data());
+  f.x = Matrix::of_rows(x.data(), rows, columns);
   return f;
 }
 
 TEST(PivotedQr, KeepsInnerProductsOfAllColumns) {
   Random random(1);
-  const MatrixXd m = random_matrix(random, 9, 7);
+  const Matrix m = random_matrix(random, 9, 7);
   const Factored f = factor_columns(m, 4);
   EXPECT_EQ(f.rank, 4);
-  MatrixXd permuted(9, 7);
-  for (int c = 0; c < 7; ++c) permuted.col(c) = m.col(f.order[static_cast<std::size_t>(c)]);
-  EXPECT_LE((f.x.transpose() * f.x - permuted.transpose() * permuted).cwiseAbs().maxCoeff(),
-            kRound);
+  Matrix permuted(9, 7);
+  for (int c = 0; c < 7; ++c) {
+    permuted.set_block(0, c, m.col(f.order[static_cast<std::size_t>(c)]));
+  }
+  EXPECT_LE((f.x.transpose() * f.x - permuted.transpose() * permuted).max_abs(), kRound);
   for (int c = 0; c < 4; ++c) {
     for (int r = c + 1; r < 9; ++r) EXPECT_EQ(f.x(r, c), 0.0);
   }
@@ -69,30 +66,30 @@ TEST(PivotedQr, KeepsInnerProductsOfAllColumns) {
 
 TEST(PivotedQr, KeptReflectionsTurnAColumnForthAndBack) {
   Random random(2);
-  const MatrixXd m = random_matrix(random, 8, 5);
+  const Matrix m = random_matrix(random, 8, 5);
   const Factored f = factor_columns(m, 4);
-  VectorXd x = m.col(f.order[4]);
-  const VectorXd original = x;
+  Matrix x = m.col(f.order[4]);
+  const Matrix original = x;
   tasks::rotate(f.keep, 8, x.data());
-  EXPECT_LE((x - f.x.col(4)).cwiseAbs().maxCoeff(), kRound);
+  EXPECT_LE((x - f.x.col(4)).max_abs(), kRound);
   tasks::rotate_back(f.keep, 8, x.data());
-  EXPECT_LE((x - original).cwiseAbs().maxCoeff(), kRound);
+  EXPECT_LE((x - original).max_abs(), kRound);
 }
 
 TEST(PivotedQr, FindsTheRankAndLeavesExactZerosBehindIt) {
   Random random(3);
-  const MatrixXd m = random_matrix(random, 8, 3) * random_matrix(random, 3, 6);
+  const Matrix m = random_matrix(random, 8, 3) * random_matrix(random, 3, 6);
   const Factored f = factor_columns(m, 6);
   EXPECT_EQ(f.rank, 3);
-  EXPECT_EQ(f.x.bottomRows(5).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(f.x.tail(5).max_abs(), 0.0);
   EXPECT_GE(f.condition, 1.0);
 }
 
 TEST(PivotedQr, ColumnsBelowTheAbsoluteFloorHaveNoRank) {
   Random random(4);
-  const MatrixXd tiny = 1e-12 * random_matrix(random, 5, 3);
+  const Matrix tiny = 1e-12 * random_matrix(random, 5, 3);
   EXPECT_EQ(factor_columns(tiny, 3).rank, 0);
-  EXPECT_EQ(factor_columns(MatrixXd::Zero(5, 3), 3).rank, 0);
+  EXPECT_EQ(factor_columns(Matrix(5, 3), 3).rank, 0);
   EXPECT_EQ(factor_columns(tiny, 3, {1e-6, 1e-14}).rank, 3);
 }
 
@@ -101,32 +98,33 @@ TEST(PivotedQr, ColumnsThatAreAllOfARowsSpaceStopAtItsSize) {
   EXPECT_EQ(factor_columns(random_matrix(random, 3, 10), 10).rank, 3);
 }
 
-TEST(LeastSquares, AgreesWithEigen) {
+TEST(LeastSquares, AgreesWithTheSvd) {
   Random random(6);
   for (int rows = 3; rows < 12; ++rows) {
-    const MatrixXd M = random_matrix(random, rows, 3);
-    const VectorXd b = random_matrix(random, rows, 1);
-    RowMajor x(rows, 4);
-    x << M, b;
-    VectorXd y(3), work(2 * rows + 8);
+    const Matrix M = random_matrix(random, rows, 3);
+    const Matrix b = random_matrix(random, rows, 1);
+    std::vector<double> x = beside(M, b).by_rows();
+    Matrix y(3), work(2 * rows + 8);
     tasks::least_squares({x.data(), 4}, rows, 3, y.data(), work.data());
-    EXPECT_LE((y - M.householderQr().solve(b)).cwiseAbs().maxCoeff(), 100 * kRound);
+    EXPECT_LE((y - pseudo_inverse(M) * b).max_abs(), 100 * kRound);
   }
 }
 
 TEST(OrthogonalFactor, GivesARotationAndATriangle) {
   Random random(7);
-  const MatrixXd M = random_matrix(random, 6, 4);
-  RowMajor t = M;
-  VectorXd v(36), beta(6);
+  const Matrix M = random_matrix(random, 6, 4);
+  std::vector<double> t = M.by_rows();
+  Matrix v(36), beta(6);
   tasks::Reflectors keep = {v.data(), beta.data(), 6, 0};
   tasks::orthogonal_factor({t.data(), 4}, 6, 4, &keep);
-  MatrixXd V = MatrixXd::Identity(6, 6);
-  for (Index c = 0; c < 6; ++c) tasks::rotate_back(keep, 6, V.col(c).data());
-  EXPECT_LE((V.transpose() * V - MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), kRound);
-  MatrixXd T = MatrixXd::Zero(6, 4);
-  T.topRows(4).triangularView<Eigen::Upper>() = t.topRows(4);
-  EXPECT_LE((V * T - M).cwiseAbs().maxCoeff(), kRound);
+  Matrix V = Matrix::identity(6);
+  for (int c = 0; c < 6; ++c) tasks::rotate_back(keep, 6, V.data() + 6 * c);
+  EXPECT_LE((V.transpose() * V - Matrix::identity(6)).max_abs(), kRound);
+  Matrix T(6, 4);
+  for (int r = 0; r < 4; ++r) {
+    for (int c = r; c < 4; ++c) T(r, c) = t[static_cast<std::size_t>(4 * r + c)];
+  }
+  EXPECT_LE((V * T - M).max_abs(), kRound);
 }
 
 // Two levels against the textbook cascade: minimum of the second in the null space of the first.
@@ -134,17 +132,17 @@ TEST(CascadeLevel, TheSecondLevelUsesOnlyWhatTheFirstLeaves) {
   Random random(8);
   const int dims = 6;
   for (const int second : {2, 3, 9}) {  // less than, equal to and more than what is left
-    const MatrixXd M1 = random_matrix(random, 3, dims), M2 = random_matrix(random, second, dims);
-    const VectorXd rhs = random_matrix(random, 3 + second, 1);
+    const Matrix M1 = random_matrix(random, 3, dims), M2 = random_matrix(random, second, dims);
+    const Matrix rhs = random_matrix(random, 3 + second, 1);
     const int columns = 3 + second;
-    RowMajor x(dims, columns);
-    x << M1.transpose(), M2.transpose();
+    const Matrix rows = beside(M1.transpose(), M2.transpose());
+    std::vector<double> x = rows.by_rows();
     std::vector<int> order(static_cast<std::size_t>(columns));
     std::iota(order.begin(), order.end(), 0);
     std::vector<double> norm2, weight(static_cast<std::size_t>(columns), 1.0);
-    for (Index c = 0; c < columns; ++c) norm2.push_back(x.col(c).squaredNorm());
-    VectorXd z = VectorXd::Zero(dims), v(dims * dims), beta(dims), r(columns),
-             d(columns * (dims + 1)), work(3 * columns + 3 * dims);
+    for (int c = 0; c < columns; ++c) norm2.push_back(rows.col(c).squared_norm());
+    Matrix z(dims), v(dims * dims), beta(dims), r(columns), d(columns * (dims + 1)),
+        work(3 * columns + 3 * dims);
     tasks::Reflectors keep = {v.data(), beta.data(), dims, 0};
     const tasks::LevelScratch scratch = {r.data(), d.data(), work.data()};
     const Block block = {x.data(), columns};
@@ -157,11 +155,10 @@ TEST(CascadeLevel, TheSecondLevelUsesOnlyWhatTheFirstLeaves) {
       first = last;
     }
     tasks::rotate_back(keep, dims, z.data());
-    EXPECT_LE((M1 * z - rhs.head(3)).cwiseAbs().maxCoeff(), 100 * kRound);
-    const MatrixXd N =
-        MatrixXd::Identity(dims, dims) - M1.completeOrthogonalDecomposition().pseudoInverse() * M1;
-    const VectorXd gradient = N.transpose() * M2.transpose() * (M2 * z - rhs.tail(second));
-    EXPECT_LE(gradient.cwiseAbs().maxCoeff(), 100 * kRound);
+    EXPECT_LE((M1 * z - rhs.head(3)).max_abs(), 100 * kRound);
+    const Matrix N = Matrix::identity(dims) - pseudo_inverse(M1) * M1;
+    const Matrix gradient = N.transpose() * M2.transpose() * (M2 * z - rhs.tail(second));
+    EXPECT_LE(gradient.max_abs(), 100 * kRound);
   }
 }
 

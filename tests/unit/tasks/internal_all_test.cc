@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +11,7 @@
 
 #include "tasks/whole_body_controller.h"
 #include "tests/support/hume.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 namespace {
@@ -101,14 +100,10 @@ class Quadruped : public testing::Test {
     std::array<double, 12> tau{};
     controller_->compute(control, tick_++, nullptr, tau.data());
   }
-  Eigen::Vector3d force(int contact) const {
-    const auto& f = controller_->result().force[static_cast<std::size_t>(contact)];
-    return {f[0], f[1], f[2]};
+  Matrix force(int contact) const {
+    return Matrix::vector(controller_->result().force[static_cast<std::size_t>(contact)]);
   }
-  Eigen::Vector3d place(int contact) const {
-    const auto& p = model_->point(contact).position;
-    return {p[0], p[1], p[2]};
-  }
+  Matrix place(int contact) const { return Matrix::vector(model_->point(contact).position); }
 
   model::RobotDescription robot_;
   std::unique_ptr<model::ControlModel> model_;
@@ -122,8 +117,9 @@ TEST_F(Quadruped, EveryPairOfThreeContactsPushesWithTheForceThatIsAskedFor) {
   std::size_t pair = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = i + 1; j < 3; ++j, ++pair) {
-      const Eigen::Vector3d x = (place(contacts[i]) - place(contacts[j])).normalized();
-      EXPECT_NEAR(-0.5 * x.dot(force(contacts[i]) - force(contacts[j])), 40.0, 1e-8);
+      const Matrix x = place(contacts[i]) - place(contacts[j]);
+      const double apart = -0.5 * dot(x, force(contacts[i]) - force(contacts[j])) / x.norm();
+      EXPECT_NEAR(apart, 40.0, 1e-8);
       EXPECT_NEAR(controller_->result().internal[pair], 40.0, 1e-8);
     }
   }
@@ -133,15 +129,15 @@ TEST_F(Quadruped, ForcesBetweenAllMoveNothing) {
   for (const auto& contacts : {std::vector<int>{0, 1, 2}, std::vector<int>{0, 1, 2, 3}}) {
     compute(set_of(contacts, 0.0));
     const tasks::ControllerResult without = controller_->result();
-    std::vector<Eigen::Vector3d> before;
+    std::vector<Matrix> before;
     for (const int c : contacts) before.push_back(force(c));
     compute(set_of(contacts, 40.0));
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+    Matrix sum(3), moment(3);
     double largest = 0.0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const Eigen::Vector3d change = force(contacts[i]) - before[i];
+      const Matrix change = force(contacts[i]) - before[i];
       sum += change;
-      moment += place(contacts[i]).cross(change);
+      moment += cross(place(contacts[i]), change);
       largest = std::max(largest, change.norm());
     }
     // The pushes cancel: neither the sum of all forces nor their moment changes, nor the CoM's

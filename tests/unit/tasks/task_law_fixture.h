@@ -4,32 +4,29 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
 
 #include "tasks/task_law.h"
 #include "tests/support/hume.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 using tasks::AxisCommand;
 using tasks::AxisEvaluation;
 using tasks::TaskCommand;
 using tasks::TaskType;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+constexpr std::array<double, 3> kX = {1.0, 0.0, 0.0}, kY = {0.0, 1.0, 0.0}, kZ = {0.0, 0.0, 1.0};
 constexpr double kPeriod = 1e-3;
 constexpr double kIntegrationStep = 1e-4;  // s, of error_after
 
 struct Law {
-  RowMajor J;
-  VectorXd bias;
+  Matrix J;
+  Matrix bias;
   std::vector<AxisEvaluation> axes;
 };
 
@@ -40,11 +37,13 @@ class TaskLaw : public testing::Test {
                const std::vector<int>& stance = {}) {
     TaskCommand t = task;
     t.axis_count = static_cast<int>(axes.size());
-    Law law = {RowMajor(t.axis_count, 12), VectorXd(t.axis_count), {}};
+    Law law = {{}, Matrix(t.axis_count), {}};
     law.axes.resize(axes.size());
+    std::vector<double> J(axes.size() * 12);
     const tasks::LawContext context = {&model_, &memory_,      tick,
                                        period_, stance.data(), static_cast<int>(stance.size())};
-    tasks::evaluate_task(t, axes.data(), context, law.J.data(), law.bias.data(), law.axes.data());
+    tasks::evaluate_task(t, axes.data(), context, J.data(), law.bias.data(), law.axes.data());
+    law.J = Matrix::of_rows(J.data(), t.axis_count, 12);
     return law;
   }
   static TaskCommand task(TaskType type, int point = -1) {
@@ -53,11 +52,13 @@ class TaskLaw : public testing::Test {
     t.point = point;
     return t;
   }
-  // Base rotated about world z by yaw, then as given in the heading frame.
-  model::State turned(double yaw, const Eigen::Quaterniond& local) const {
+  // Base rotated about world z by yaw, then by `angle` about a unit axis of the heading frame.
+  model::State turned(double yaw, const std::array<double, 3>& axis, double angle) const {
     model::State s = standing_state(robot_);
-    const Eigen::Quaterniond q = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * local;
-    s.q_WB = {q.w(), q.x(), q.y(), q.z()};
+    const double cz = std::cos(yaw / 2), sz = std::sin(yaw / 2);
+    const double c = std::cos(angle / 2), n = std::sin(angle / 2);
+    const double x = n * axis[0], y = n * axis[1], z = n * axis[2];
+    s.q_WB = {cz * c - sz * z, cz * x - sz * y, cz * y + sz * x, cz * z + sz * c};
     return s;
   }
   // What the reference does in the course of time, given the model's present state.
@@ -66,26 +67,25 @@ class TaskLaw : public testing::Test {
   // The errors of the task after `duration`. The exact law is ë + kd ė + kp e = 0. Velocities by
   // Euler steps, places by their mean: of second order where u does not depend on the velocity's
   // own history, else the error of a rate is at most h/2 t max|ë'|.
-  VectorXd error_after(const TaskCommand& task, std::vector<AxisCommand> axes, model::State state,
-                       double duration, const std::vector<int>& stance = {},
-                       const Adjust& adjust = nullptr) {
+  Matrix error_after(const TaskCommand& task, std::vector<AxisCommand> axes, model::State state,
+                     double duration, const std::vector<int>& stance = {},
+                     const Adjust& adjust = nullptr) {
     constexpr double h = kIntegrationStep;
     for (int i = 0; i < static_cast<int>(duration / h + 0.5); ++i) {
       model_.update(state);
       if (adjust) adjust(axes);
       const Law law = evaluate(task, axes, i, stance);
-      VectorXd u(law.bias.size());
-      for (Eigen::Index k = 0; k < u.size(); ++k)
-        u(k) = law.axes[static_cast<std::size_t>(k)].commanded;
-      const VectorXd a = law.J.completeOrthogonalDecomposition().solve(u - law.bias);
+      Matrix u(law.bias.size());
+      for (int k = 0; k < u.size(); ++k) u(k) = law.axes[static_cast<std::size_t>(k)].commanded;
+      const Matrix a = pseudo_inverse(law.J) * (u - law.bias);
       model::State middle = state;
       for (std::size_t k = 0; k < 6; ++k) {
-        const double dv = h * a(static_cast<Eigen::Index>(k));
+        const double dv = h * a(static_cast<int>(k));
         (k < 3 ? middle.v_WB[k] : middle.w_WB_B[k - 3]) += 0.5 * dv;
         (k < 3 ? state.v_WB[k] : state.w_WB_B[k - 3]) += dv;
       }
       for (std::size_t k = 0; k < 6; ++k) {
-        const double dv = h * a(static_cast<Eigen::Index>(6 + k));
+        const double dv = h * a(static_cast<int>(6 + k));
         middle.qd[k] += 0.5 * dv;
         state.qd[k] += dv;
       }
@@ -97,8 +97,8 @@ class TaskLaw : public testing::Test {
     model_.update(state);
     if (adjust) adjust(axes);
     const Law law = evaluate(task, axes, 1 << 20, stance);
-    VectorXd e(law.bias.size());
-    for (Eigen::Index k = 0; k < e.size(); ++k) e(k) = law.axes[static_cast<std::size_t>(k)].error;
+    Matrix e(law.bias.size());
+    for (int k = 0; k < e.size(); ++k) e(k) = law.axes[static_cast<std::size_t>(k)].error;
     return e;
   }
 

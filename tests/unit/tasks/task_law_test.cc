@@ -19,7 +19,7 @@ TEST_F(TaskLaw, CentreOfMassErrorsDecayAsTheGainsSay) {
   const auto com = model_.com().position;
   const std::vector<AxisCommand> axes = {{0, 100, 0, 20, com[0] + 0.03, 0, 0},
                                          {2, 100, 0, 20, com[2] - 0.02, 0, 0}};
-  const VectorXd e =
+  const Matrix e =
       error_after(task(TaskType::com_position), axes, standing_state(robot_), kDuration);
   EXPECT_NEAR(e(0), 0.03 * critically_damped(kDuration), 0.03 * kStep);
   EXPECT_NEAR(e(1), -0.02 * critically_damped(kDuration), 0.02 * kStep);
@@ -30,7 +30,7 @@ TEST_F(TaskLaw, PointErrorsDecayAsTheGainsSay) {
   const auto knee = model_.point(6).position;
   const std::vector<AxisCommand> at_knee = {{0, 100, 0, 20, knee[0] + 0.05, 0, 0},
                                             {2, 100, 0, 20, knee[2] + 0.02, 0, 0}};
-  const VectorXd k =
+  const Matrix k =
       error_after(task(TaskType::point_position, 6), at_knee, standing_state(robot_), kDuration);
   EXPECT_NEAR(k(0), 0.05 * critically_damped(kDuration), 0.05 * kStep);
   EXPECT_NEAR(k(1), 0.02 * critically_damped(kDuration), 0.05 * kStep);
@@ -38,10 +38,9 @@ TEST_F(TaskLaw, PointErrorsDecayAsTheGainsSay) {
 
 TEST_F(TaskLaw, OrientationErrorsDecayAsTheGainsSayAtAnyHeading) {
   for (const double yaw : {0.0, 2.0, -2.5}) {
-    const auto tilt = Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Vector3d::UnitY()));
     const std::vector<AxisCommand> axes = {{1, 100, 0, 20, 0, 0, 0}, {0, 100, 0, 20, 0, 0, 0}};
-    const VectorXd e =
-        error_after(task(TaskType::body_orientation), axes, turned(yaw, tilt), kDuration);
+    const Matrix e =
+        error_after(task(TaskType::body_orientation), axes, turned(yaw, kY, 0.1), kDuration);
     EXPECT_NEAR(e(0), -0.1 * critically_damped(kDuration), 0.1 * kStep);
     EXPECT_NEAR(e(1), 0.0, 0.1 * kStep);
   }
@@ -50,7 +49,7 @@ TEST_F(TaskLaw, OrientationErrorsDecayAsTheGainsSayAtAnyHeading) {
 TEST_F(TaskLaw, JointErrorsDecayAsTheGainsSay) {
   const model::State s = standing_state(robot_);
   const std::vector<AxisCommand> axes = {{2, 100, 0, 20, s.q[2] + 0.1, 0, 0}};
-  const VectorXd e = error_after(task(TaskType::joint_posture), axes, s, kDuration);
+  const Matrix e = error_after(task(TaskType::joint_posture), axes, s, kDuration);
   EXPECT_NEAR(e(0), 0.1 * critically_damped(kDuration), 0.1 * kStep);
 }
 
@@ -83,37 +82,37 @@ TEST_F(TaskLaw, RowsAreTheModelsJacobianAndBias) {
 }
 
 TEST_F(TaskLaw, AnOrientationErrorIsTheRotationVectorEvenWhenLarge) {
-  const Eigen::AngleAxisd about(1.5, Vector3d(0.6, -0.64, 0.48));
+  const std::array<double, 3> axis = {0.6, -0.64, 0.48};
   for (const double yaw : {0.0, 2.0}) {
-    model_.update(turned(yaw, Eigen::Quaterniond(about)));
+    model_.update(turned(yaw, axis, 1.5));
     // Reference: the heading frame itself, whose roll, pitch and yaw are those of `yaw` alone. The
     // body's own heading differs: errors are given on its axes.
     const Law law =
         evaluate(task(TaskType::body_orientation),
                  {{0, 1, 0, 0, 0.0, 0, 0}, {1, 1, 0, 0, 0.0, 0, 0}, {2, 1, 0, 0, yaw, 0, 0}});
-    const Eigen::AngleAxisd heading(-model_.rpy()[2], Vector3d::UnitZ());
-    const Vector3d world = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * (-1.5 * about.axis());
-    const Vector3d expected = heading * world;
+    const Matrix z = Matrix::vector(kZ);
+    const Matrix world = rotation(z, yaw) * (-1.5 * Matrix::vector(axis));
+    const Matrix expected = rotation(z, -model_.rpy()[2]) * world;
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(law.axes[k].error, expected(static_cast<Eigen::Index>(k)), 1e-12);
+      EXPECT_NEAR(law.axes[k].error, expected(static_cast<int>(k)), 1e-12);
     }
   }
 }
 
 TEST_F(TaskLaw, PitchAndRollKeepTheirMeaningAtAnyYaw) {
-  model_.update(turned(2.0, Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3d::UnitY()))));
+  model_.update(turned(2.0, kY, 0.2));
   const std::vector<AxisCommand> axes = {{1, 1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0}};
   const Law pitched = evaluate(task(TaskType::body_orientation), axes);
   EXPECT_NEAR(pitched.axes[0].error, -0.2, 1e-12);
   EXPECT_NEAR(pitched.axes[1].error, 0.0, 1e-12);
-  model_.update(turned(2.0, Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3d::UnitX()))));
+  model_.update(turned(2.0, kX, 0.2));
   const Law rolled = evaluate(task(TaskType::body_orientation), axes);
   EXPECT_NEAR(rolled.axes[0].error, 0.0, 1e-12);
   EXPECT_NEAR(rolled.axes[1].error, -0.2, 1e-12);
 }
 
 TEST_F(TaskLaw, YawThatIsNotControlledIsNoError) {
-  model_.update(turned(2.0, Eigen::Quaterniond::Identity()));
+  model_.update(turned(2.0, kZ, 0.0));
   const Law law =
       evaluate(task(TaskType::body_orientation), {{1, 1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0}});
   EXPECT_NEAR(law.axes[0].error, 0.0, 1e-12);
@@ -121,7 +120,7 @@ TEST_F(TaskLaw, YawThatIsNotControlledIsNoError) {
 }
 
 TEST_F(TaskLaw, AYawErrorGoesTheShortWayRound) {
-  model_.update(turned(3.0, Eigen::Quaterniond::Identity()));
+  model_.update(turned(3.0, kZ, 0.0));
   const Law law = evaluate(task(TaskType::body_orientation), {{2, 1, 0, 0, -3.0, 0, 0}});
   EXPECT_NEAR(law.axes[0].error, 2.0 * 3.14159265358979 - 6.0, 1e-12);
 }

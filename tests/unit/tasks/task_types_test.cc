@@ -38,8 +38,8 @@ class TaskTypes : public TaskLaw {
     const model::State s = random_state(robot_, random_);
     model_.update(s);
     const Law now = evaluate(t, axes, 0, stance);
-    VectorXd v(12);
-    for (Eigen::Index k = 0; k < 12; ++k) {
+    Matrix v(12);
+    for (int k = 0; k < 12; ++k) {
       const auto q = static_cast<std::size_t>(k);
       v(k) = k < 3 ? s.v_WB[q] : k < 6 ? s.w_WB_B[q - 3] : s.qd[q - 6];
     }
@@ -47,15 +47,15 @@ class TaskTypes : public TaskLaw {
     for (const bool later : {false, true}) {
       model_.update(integrated(s, later ? h : -h, 6));
       const Law law = evaluate(t, axes, 0, stance);
-      const VectorXd rate = law.J * v;
+      const Matrix rate = law.J * v;
       for (std::size_t k = 0; k < axes.size(); ++k) {
         if (measure) (later ? after : before).push_back(measure(law, k));
-        (later ? rate_after : rate_before).push_back(rate(static_cast<Eigen::Index>(k)));
+        (later ? rate_after : rate_before).push_back(rate(static_cast<int>(k)));
       }
     }
-    const VectorXd rate = now.J * v;
+    const Matrix rate = now.J * v;
     for (std::size_t k = 0; k < axes.size(); ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
+      const auto row = static_cast<int>(k);
       EXPECT_NEAR(rate(row), now.axes[k].velocity, 1e-12);
       if (measure) {
         EXPECT_NEAR(rate(row), (after[k] - before[k]) / (2 * h), kDifference) << k;
@@ -68,24 +68,23 @@ class TaskTypes : public TaskLaw {
 TEST_F(TaskTypes, AFramesOrientationErrorsDecayAsTheGainsSay) {
   const auto rpy = model_.frame(kLeftFootPoint).rpy;
   for (const Frame frame : {Frame::heading, Frame::world}) {
-    const VectorXd e = error_after(framed(TaskType::frame_orientation, frame, kLeftFootPoint),
-                                   {to(0, rpy[0] + 0.05), to(1, rpy[1] - 0.1), to(2, rpy[2])},
-                                   standing_state(robot_), kDuration);
+    const Matrix e = error_after(framed(TaskType::frame_orientation, frame, kLeftFootPoint),
+                                 {to(0, rpy[0] + 0.05), to(1, rpy[1] - 0.1), to(2, rpy[2])},
+                                 standing_state(robot_), kDuration);
     model_.update(standing_state(robot_));
     const Law start = evaluate(framed(TaskType::frame_orientation, frame, kLeftFootPoint),
                                {to(0, rpy[0] + 0.05), to(1, rpy[1] - 0.1), to(2, rpy[2])});
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(e(static_cast<Eigen::Index>(k)),
-                  start.axes[k].error * critically_damped(kDuration), 0.1 * 5 * kStep);
+      EXPECT_NEAR(e(static_cast<int>(k)), start.axes[k].error * critically_damped(kDuration),
+                  0.1 * 5 * kStep);
     }
   }
 }
 
 TEST_F(TaskTypes, OneAxisOfAFramesOrientationDecaysAlone) {
   const auto rpy = model_.frame(kLeftFootPoint).rpy;
-  const VectorXd e =
-      error_after(framed(TaskType::frame_orientation, Frame::heading, kLeftFootPoint),
-                  {to(1, rpy[1] + 0.1)}, standing_state(robot_), kDuration);
+  const Matrix e = error_after(framed(TaskType::frame_orientation, Frame::heading, kLeftFootPoint),
+                               {to(1, rpy[1] + 0.1)}, standing_state(robot_), kDuration);
   EXPECT_NEAR(e(0), 0.1 * critically_damped(kDuration), 0.1 * kStep);
 }
 
@@ -97,8 +96,8 @@ TEST_F(TaskTypes, TheFrameOfASiteOnTheBaseIsTheBasesOrientation) {
   const std::vector<AxisCommand> axes = {to(0, 0.1), to(1, -0.2), to(2, 0.3)};
   const Law frame = evaluate(framed(TaskType::frame_orientation, Frame::heading, torso), axes);
   const Law base = evaluate(framed(TaskType::body_orientation, Frame::heading), axes, 1);
-  EXPECT_LE((frame.J - base.J).cwiseAbs().maxCoeff(), 1e-14);
-  EXPECT_LE((frame.bias - base.bias).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LE((frame.J - base.J).max_abs(), 1e-14);
+  EXPECT_LE((frame.bias - base.bias).max_abs(), 1e-13);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(frame.axes[k].error, base.axes[k].error, 1e-14);
   }
@@ -109,13 +108,14 @@ TEST_F(TaskTypes, TheWorldsAxesGiveTheSameErrorTurned) {
   const std::vector<AxisCommand> axes = {to(0, 0.1), to(1, -0.2), to(2, 0.3)};
   const Law heading = evaluate(framed(TaskType::body_orientation, Frame::heading), axes);
   const Law world = evaluate(framed(TaskType::body_orientation, Frame::world), axes, 1);
-  const Eigen::AngleAxisd turn(model_.rpy()[2], Vector3d::UnitZ());
-  const Vector3d e(heading.axes[0].error, heading.axes[1].error, heading.axes[2].error);
-  const Vector3d expected = turn * e;
+  const Matrix e =
+      Matrix::vector({heading.axes[0].error, heading.axes[1].error, heading.axes[2].error});
+  const Matrix turn = rotation(Matrix::vector(kZ), model_.rpy()[2]);
+  const Matrix expected = turn * e;
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(world.axes[k].error, expected(static_cast<Eigen::Index>(k)), 1e-14);
+    EXPECT_NEAR(world.axes[k].error, expected(static_cast<int>(k)), 1e-14);
   }
-  EXPECT_LE((world.J - turn.toRotationMatrix() * heading.J).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LE((world.J - turn * heading.J).max_abs(), 1e-14);
 }
 
 TEST_F(TaskTypes, APosesErrorsDecayAsTheGainsSay) {
@@ -124,12 +124,11 @@ TEST_F(TaskTypes, APosesErrorsDecayAsTheGainsSay) {
   const std::vector<AxisCommand> axes = {to(0, p[0] + 0.03),  to(1, p[1]),
                                          to(2, p[2] + 0.05),  to(3, rpy[0]),
                                          to(4, rpy[1] + 0.1), to(5, rpy[2])};
-  const VectorXd e = error_after(task(TaskType::frame_pose, kLeftKneePoint), axes,
-                                 standing_state(robot_), kDuration);
+  const Matrix e = error_after(task(TaskType::frame_pose, kLeftKneePoint), axes,
+                               standing_state(robot_), kDuration);
   const std::array<double, 6> start = {0.03, 0.0, 0.05, 0.0, 0.1, 0.0};
   for (std::size_t k = 0; k < 6; ++k) {
-    EXPECT_NEAR(e(static_cast<Eigen::Index>(k)), start[k] * critically_damped(kDuration),
-                0.1 * kStep);
+    EXPECT_NEAR(e(static_cast<int>(k)), start[k] * critically_damped(kDuration), 0.1 * kStep);
   }
 }
 
@@ -140,11 +139,11 @@ TEST_F(TaskTypes, AngularMomentumDiesOutAtTheRateOfKd) {
   // h' = -5 h: from h0 to h0 exp(-1). Euler: relative error kd² dt t/2 = 2.5e-4.
   const std::vector<AxisCommand> axes = {
       {0, 0, 0, 5, 0, 0, 0}, {1, 0, 0, 5, 0, 0, 0}, {2, 0, 0, 5, 0, 0, 0}};
-  const VectorXd e =
+  const Matrix e =
       error_after(task(TaskType::centroidal_angular_momentum), axes, moving, kDuration);
   const double size = std::hypot(h[0], h[1], h[2]);
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(e(static_cast<Eigen::Index>(k)), -h[k] * std::exp(-1.0), 1e-3 * size);
+    EXPECT_NEAR(e(static_cast<int>(k)), -h[k] * std::exp(-1.0), 1e-3 * size);
   }
 }
 
@@ -154,8 +153,8 @@ TEST_F(TaskTypes, KpActsOnTheIntegralOfTheMomentumsError) {
   model_.update(moving);
   const double h = model_.angular_momentum().velocity[1];
   // With z = ∫e: z'' + 20 z' + 100 z = 0, z(0) = 0, z'(0) = e0: e = e0 (1 - 10 t) exp(-10 t).
-  const VectorXd e = error_after(task(TaskType::centroidal_angular_momentum),
-                                 {{1, 100, 0, 20, 0.2, 0, 0}}, moving, kDuration);
+  const Matrix e = error_after(task(TaskType::centroidal_angular_momentum),
+                               {{1, 100, 0, 20, 0.2, 0, 0}}, moving, kDuration);
   const double expected = (0.2 - h) * (1.0 - 10.0 * kDuration) * std::exp(-10.0 * kDuration);
   // h/2 t max|e''| = 1e-4/2 x 0.2 x 300 e0.
   EXPECT_NEAR(e(0), expected, 4e-3 * std::abs(0.2 - h));
@@ -200,8 +199,8 @@ TEST_F(TaskTypesOnPoints, RowsFromTheStanceFeetAreDerivativesOfTheDistance) {
 TEST_F(TaskTypesOnPoints, APlaceOverTheStanceFeetDecaysAsTheGainsSay) {
   const double x =
       model_.com().position[0] - 0.5 * (model_.point(0).position[0] + model_.point(1).position[0]);
-  const VectorXd e = error_after(framed(TaskType::com_position, Frame::stance), {to(0, x + 0.03)},
-                                 standing_state(robot_), kDuration, {0, 1});
+  const Matrix e = error_after(framed(TaskType::com_position, Frame::stance), {to(0, x + 0.03)},
+                               standing_state(robot_), kDuration, {0, 1});
   EXPECT_NEAR(e(0), 0.03 * critically_damped(kDuration), 0.03 * kStep);
 }
 
@@ -214,8 +213,8 @@ TEST_F(TaskTypes, FromTwoStanceFeetTheOriginIsTheirMiddle) {
 
 TEST_F(TaskTypes, AHeightOverTheStanceFootDecaysAsTheGainsSay) {
   const double z = model_.com().position[2] - model_.point(0).position[2];
-  const VectorXd e = error_after(framed(TaskType::com_position, Frame::stance), {to(2, z + 0.02)},
-                                 standing_state(robot_), kDuration, {0});
+  const Matrix e = error_after(framed(TaskType::com_position, Frame::stance), {to(2, z + 0.02)},
+                               standing_state(robot_), kDuration, {0});
   EXPECT_NEAR(e(0), 0.02 * critically_damped(kDuration), 0.02 * kStep);
 }
 
@@ -244,7 +243,7 @@ TEST_F(TaskTypes, AHeightOverASurfaceDecaysAsTheGainsSayOnTheRampToo) {
     axes[0].ref_acc = ground.curvature * speed * speed;
     axes[0].slope = ground.slope;
   };
-  const VectorXd e =
+  const Matrix e =
       error_after(task(TaskType::com_position), {to(2, 0.0)}, running, 0.1, {}, follow);
   // Curvature is up to 17 /m: of what it asks for, an Euler step sees h/2 x 17 x 0.36 m/s² late.
   EXPECT_NEAR(e(0), -0.02 * critically_damped(0.1), 0.02 * kStep + 0.5e-4 * 6.2 * 0.1);

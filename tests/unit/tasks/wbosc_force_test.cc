@@ -12,8 +12,6 @@
 namespace footfall::tests {
 namespace {
 
-using Eigen::VectorXd;
-
 class WboscTension : public testing::Test {
  protected:
   void fill(const model::State& state, double tension) {
@@ -21,11 +19,11 @@ class WboscTension : public testing::Test {
     builder_.emplace(model_, solver_.problem());
     fill_dual(*builder_, model_, random_, tension);
   }
-  VectorXd force_of(const VectorXd& tau) {
+  Matrix force_of(const Matrix& tau) {
     const NaiveProblem p = dense_problem(model_, solver_.problem());
-    return dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau).f;
+    return dense_solve(p, tau).f;
   }
-  VectorXd tau() const { return Eigen::Map<const VectorXd>(solver_.solution().tau.data(), 6); }
+  Matrix tau() const { return Matrix::vector(solver_.solution().tau.data(), 6); }
 
   model::RobotDescription robot_ = load_hume();
   model::ControlModel model_{robot_};
@@ -39,7 +37,7 @@ TEST_F(WboscTension, AHundredNewtonsAreAHundredAtEachFootPushingApart) {
   // Symmetric and at rest; nothing asked for: no sideways acceleration, both feet carry the same.
   for (double& u : solver_.problem().u) u = 0.0;
   solver_.solve();
-  const VectorXd f = force_of(tau());
+  const Matrix f = force_of(tau());
   // The right foot stands at -y. The robot pushes it outwards (-y), so the ground pushes it back.
   EXPECT_NEAR(f(1), 100.0, 0.02);
   EXPECT_NEAR(f(4), -100.0, 0.02);
@@ -52,11 +50,11 @@ TEST_F(WboscTension, TheMeanOfBothFeetIsWhatWasAskedForInAnyState) {
     const double wanted = random_.within(150.0);
     fill(random_state(robot_, random_), wanted);
     solver_.solve();
-    const VectorXd f = force_of(tau());
+    const Matrix f = force_of(tau());
     double apart = 0.0;
     for (int c = 0; c < 6; ++c)
       apart += solver_.problem().W_int[static_cast<std::size_t>(c)] * f(c);
-    const double tolerance = 1e-9 * f.cwiseAbs().maxCoeff();
+    const double tolerance = 1e-9 * f.max_abs();
     EXPECT_NEAR(apart, wanted, tolerance);
     EXPECT_NEAR(solver_.solution().internal[0], apart, tolerance);
   }
@@ -67,10 +65,10 @@ TEST_F(WboscTension, MeasuredTensionIsThatOfTheMeasuredTorque) {
   const std::array<double, 6> measured = {3.0, -20.0, 40.0, -4.0, -15.0, 30.0};
   solver_.problem().tau_measured = measured.data();
   solver_.solve();
-  const VectorXd f = force_of(Eigen::Map<const VectorXd>(measured.data(), 6));
+  const Matrix f = force_of(Matrix::vector(measured.data(), 6));
   double apart = 0.0;
   for (int c = 0; c < 6; ++c) apart += solver_.problem().W_int[static_cast<std::size_t>(c)] * f(c);
-  EXPECT_NEAR(solver_.solution().internal_measured[0], apart, 1e-9 * f.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(solver_.solution().internal_measured[0], apart, 1e-9 * f.max_abs());
 }
 
 // F_cmd = F_ref + K_F (F_ref - F): an actuator error that alone makes F wrong by d leaves
@@ -106,8 +104,8 @@ TEST_F(WboscTension, TheCorrectedAppendixGivesTheSameTorqueWithFeedback) {
     solver_.problem().tau_measured = measured.data();
     solver_.problem().K_F[0] = 2.0;
     solver_.solve();
-    const VectorXd expected = naive_wbosc(dense_problem(model_, solver_.problem())).tau;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
+    const Matrix expected = naive_wbosc(dense_problem(model_, solver_.problem())).tau;
+    EXPECT_LE((tau() - expected).max_abs(), 1e-9 * expected.max_abs());
   }
 }
 
@@ -116,13 +114,13 @@ TEST_F(WboscTension, OnOneFootThereIsNoTensionToControl) {
   builder_.emplace(model_, solver_.problem());
   fill_single(*builder_, model_, random_);
   solver_.solve();
-  const VectorXd before = tau();
+  const Matrix before = tau();
   std::array<double, 3> w = {0.0, 1.0, 0.0};
   std::copy(w.begin(), w.end(), solver_.problem().W_int.begin());
   solver_.problem().F_int[0] = 100.0;
   solver_.problem().internal_rows = solver_.problem().named_internal_rows = 1;
   solver_.solve();
-  EXPECT_LE((tau() - before).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LE((tau() - before).max_abs(), 1e-12);
 }
 
 // Three contacts: the named pair gets its force, the others come as near to theirs as they can.
@@ -138,10 +136,10 @@ TEST_F(WboscTension, NamedTensionsComeBeforeTheOthers) {
   solver.solve();
   EXPECT_NEAR(solver.solution().internal[0], 80.0, 1e-7);
   const NaiveProblem p = dense_problem(model_, solver.problem());
-  const Eigen::Map<const VectorXd> tau(solver.solution().tau.data(), 6);
-  const VectorXd qdd = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau).qdd;
-  const VectorXd still = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, VectorXd::Zero(6)).qdd;
-  EXPECT_LE((qdd - still).cwiseAbs().maxCoeff(), 1e-9 * still.cwiseAbs().maxCoeff());
+  const Matrix tau = Matrix::vector(solver.solution().tau.data(), 6);
+  const Matrix qdd = dense_solve(p, tau).qdd;
+  const Matrix still = dense_solve(p, Matrix(6)).qdd;
+  EXPECT_LE((qdd - still).max_abs(), 1e-9 * still.max_abs());
 }
 
 }  // namespace

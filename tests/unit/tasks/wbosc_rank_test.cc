@@ -1,7 +1,6 @@
 // Where rank drops: more task rows than freedom, levels without freedom, redundant contacts, none.
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <array>
 #include <optional>
 
@@ -12,9 +11,6 @@
 
 namespace footfall::tests {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 constexpr double kRankBar = 1e-9;  // of the largest acceleration or torque
 
@@ -87,25 +83,24 @@ class WboscRank : public testing::Test {
     p.contact_rows += 3;
   }
   NaiveProblem dense() { return dense_problem(model_, solver_.problem()); }
-  VectorXd tau() const { return Eigen::Map<const VectorXd>(solver_.solution().tau.data(), 6); }
-  VectorXd achieved() {
-    return Eigen::Map<const VectorXd>(solver_.solution().achieved.data(),
-                                      solver_.problem().task_rows);
+  Matrix tau() const { return Matrix::vector(solver_.solution().tau.data(), 6); }
+  Matrix achieved() {
+    return Matrix::vector(solver_.solution().achieved.data(), solver_.problem().task_rows);
   }
-  VectorXd commanded() {
-    return Eigen::Map<const VectorXd>(solver_.problem().u.data(), solver_.problem().task_rows);
+  Matrix commanded() {
+    return Matrix::vector(solver_.problem().u.data(), solver_.problem().task_rows);
   }
   // The achieved accelerations as said and as the equations of motion give them.
   void expect_truthful() {
     const NaiveProblem p = dense();
-    const DenseMotion truth = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau());
-    const VectorXd qdd = truth.qdd;
+    const DenseMotion truth = dense_solve(p, tau());
+    const Matrix qdd = truth.qdd;
     int row = 0;
     for (const NaiveLevel& level : p.levels) {
       const auto rows = static_cast<int>(level.J.rows());
-      const VectorXd real = level.J * qdd + level.J_bias;
-      EXPECT_LE((real - achieved().segment(row, rows)).cwiseAbs().maxCoeff(),
-                kRankBar * std::max(1.0, qdd.cwiseAbs().maxCoeff()));
+      const Matrix real = level.J * qdd + level.J_bias;
+      EXPECT_LE((real - achieved().middle_rows(row, rows)).max_abs(),
+                kRankBar * std::max(1.0, qdd.max_abs()));
       row += rows;
     }
   }
@@ -128,15 +123,14 @@ TEST_F(WboscRank, TwentyMarkersInOneLevelGiveTheLeastSquaresAcceleration) {
     EXPECT_EQ(solver_.solution().level_rank[0], dual ? 5 : 6);
     EXPECT_TRUE(solver_.solution().finite);
     const NaiveProblem p = dense();
-    const VectorXd expected = naive_wbosc(p).tau;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kRankBar * expected.cwiseAbs().maxCoeff());
+    const Matrix expected = naive_wbosc(p).tau;
+    EXPECT_LE((tau() - expected).max_abs(), kRankBar * expected.max_abs());
     // Least squares: no torque can reduce the residual further.
-    const VectorXd zero = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, VectorXd::Zero(6)).qdd;
+    const Matrix zero = dense_solve(p, Matrix(6)).qdd;
     for (int j = 0; j < 6; ++j) {
-      const VectorXd unit = VectorXd::Unit(6, j);
-      const VectorXd change =
-          p.levels[0].J * (dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, unit).qdd - zero);
-      EXPECT_NEAR(change.dot(achieved() - commanded()), 0.0,
+      const Matrix unit = Matrix::unit(6, j);
+      const Matrix change = p.levels[0].J * (dense_solve(p, unit).qdd - zero);
+      EXPECT_NEAR(dot(change, achieved() - commanded()), 0.0,
                   kRankBar * change.norm() * commanded().norm());
     }
     expect_truthful();
@@ -152,8 +146,8 @@ TEST_F(WboscRank, WeightsShareTheResidualOfAnOverDeterminedLevel) {
   for (std::size_t i = 0; i < 3; ++i) solver_.problem().weight[i] = 1e4;
   solver_.solve();
   EXPECT_LT((achieved() - commanded()).head(3).norm(), 0.1 * before);
-  const VectorXd expected = naive_wbosc(dense()).tau;
-  EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), 1e-7 * expected.cwiseAbs().maxCoeff());
+  const Matrix expected = naive_wbosc(dense()).tau;
+  EXPECT_LE((tau() - expected).max_abs(), 1e-7 * expected.max_abs());
 }
 
 TEST_F(WboscRank, ALevelInTheSpanOfAHigherOneGetsNoRankAndAddsNoTorque) {
@@ -161,7 +155,7 @@ TEST_F(WboscRank, ALevelInTheSpanOfAHigherOneGetsNoRankAndAddsNoTorque) {
     next();
     fill_single(*builder_, model_, random_);  // uses all six actuated directions
     solver_.solve();
-    const VectorXd before = tau();
+    const Matrix before = tau();
     for (int j = 0; j < 6; ++j) builder_->joint_row(j, random_.within(1e3));
     builder_->end_level();
     builder_->row(model_.com(), {0.0, 0.0, 1.0}, 1e3);
@@ -170,7 +164,7 @@ TEST_F(WboscRank, ALevelInTheSpanOfAHigherOneGetsNoRankAndAddsNoTorque) {
     EXPECT_EQ(solver_.solution().level_rank[0], 6);
     EXPECT_EQ(solver_.solution().level_rank[1], 0);
     EXPECT_EQ(solver_.solution().level_rank[2], 0);
-    EXPECT_LE((tau() - before).cwiseAbs().maxCoeff(), kRankBar * before.cwiseAbs().maxCoeff());
+    EXPECT_LE((tau() - before).max_abs(), kRankBar * before.max_abs());
   }
 }
 
@@ -196,7 +190,7 @@ TEST_F(WboscRank, RowsOfZerosHaveNoRank) {
   builder_->end_level();
   solver_.solve();
   EXPECT_EQ(solver_.solution().level_rank[0], 0);
-  EXPECT_EQ(tau().cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(tau().max_abs(), 0.0);
 }
 
 TEST_F(WboscRank, FourContactPointsOnOneLinkHoldItLikeAPlate) {
@@ -215,14 +209,14 @@ TEST_F(WboscRank, FourContactPointsOnOneLinkHoldItLikeAPlate) {
     EXPECT_EQ(solver_.solution().actuation_rank, 6);
     EXPECT_EQ(solver_.solution().level_rank[0], 6);
     expect_truthful();
-    EXPECT_LE((achieved() - commanded()).cwiseAbs().maxCoeff(), kRankBar * 10.0);
+    EXPECT_LE((achieved() - commanded()).max_abs(), kRankBar * 10.0);
     // Of all ground forces that give this motion, the predicted one is the smallest.
     const NaiveProblem p = dense();
-    const DenseMotion truth = dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau());
-    const VectorXd needed = p.A * truth.qdd + p.h - p.U.transpose() * tau();
-    const VectorXd smallest = p.Js.transpose().completeOrthogonalDecomposition().solve(needed);
-    const Eigen::Map<const VectorXd> f(solver_.solution().f.data(), 12);
-    EXPECT_LE((f - smallest).cwiseAbs().maxCoeff(), 1e-7 * smallest.cwiseAbs().maxCoeff());
+    const DenseMotion truth = dense_solve(p, tau());
+    const Matrix needed = p.A * truth.qdd + p.h - p.U.transpose() * tau();
+    const Matrix smallest = pseudo_inverse(p.Js.transpose()) * needed;
+    const Matrix f = Matrix::vector(solver_.solution().f.data(), 12);
+    EXPECT_LE((f - smallest).max_abs(), 1e-7 * smallest.max_abs());
   }
 }
 
@@ -250,8 +244,8 @@ TEST_F(WboscRank, RedundantContactsOnAMovingLinkAreHeldAsNearlyAsPossible) {
     for (int j = 0; j < 6; ++j) builder_->joint_row(j, random_.within(5.0));
     builder_->end_level();
     solver_.solve();
-    const VectorXd expected = naive_wbosc(dense()).tau;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kRankBar * expected.cwiseAbs().maxCoeff());
+    const Matrix expected = naive_wbosc(dense()).tau;
+    EXPECT_LE((tau() - expected).max_abs(), kRankBar * expected.max_abs());
   }
 }
 
@@ -266,8 +260,8 @@ TEST_F(WboscRank, ThreeContactsOnThreeLinksAreSolvedLikeTwo) {
     solver_.solve();
     EXPECT_EQ(solver_.solution().contact_rank, 9);
     EXPECT_EQ(solver_.solution().actuation_rank, 3);
-    const VectorXd expected = naive_wbosc(dense()).tau;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kRankBar * expected.cwiseAbs().maxCoeff());
+    const Matrix expected = naive_wbosc(dense()).tau;
+    EXPECT_LE((tau() - expected).max_abs(), kRankBar * expected.max_abs());
     expect_truthful();
   }
 }
@@ -280,7 +274,7 @@ TEST_F(WboscRank, InTheAirTheJointsStillObey) {
     solver_.solve();
     EXPECT_EQ(solver_.solution().contact_rank, 0);
     EXPECT_EQ(solver_.solution().actuation_rank, 6);
-    EXPECT_LE((achieved() - commanded()).cwiseAbs().maxCoeff(), kRankBar * 10.0);
+    EXPECT_LE((achieved() - commanded()).max_abs(), kRankBar * 10.0);
     expect_truthful();
   }
 }
@@ -289,7 +283,7 @@ TEST_F(WboscRank, WithoutTasksThereIsNoTorque) {
   next();
   builder_->contact(kRightFoot);
   solver_.solve();
-  EXPECT_EQ(tau().cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(tau().max_abs(), 0.0);
   expect_truthful();
 }
 

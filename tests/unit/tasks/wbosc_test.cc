@@ -17,16 +17,12 @@
 namespace footfall::tests {
 namespace {
 
-using Eigen::VectorXd;
-
 // Condition of A and of the constrained system is up to 1e5 here: 1e-16 x 1e5 leaves 1e-11; the
 // bar of the project is 1e-9 of the largest acceleration.
 constexpr double kAlgebraBar = 1e-9;
 constexpr int kStates = 100;
 
-VectorXd vector_of(const std::vector<double>& v, int rows) {
-  return Eigen::Map<const VectorXd>(v.data(), rows);
-}
+Matrix vector_of(const std::vector<double>& v, int rows) { return Matrix::vector(v.data(), rows); }
 
 class WboscOnHume : public testing::Test {
  protected:
@@ -40,22 +36,20 @@ class WboscOnHume : public testing::Test {
       fill_single(*builder_, model_, random_);
     }
   }
-  DenseMotion motion(const VectorXd& tau) const {
+  DenseMotion motion(const Matrix& tau) const {
     const NaiveProblem p = dense_problem(model_, const_cast<tasks::Wbosc&>(solver_).problem());
-    return dense_solve(p.A, p.h, p.U, p.Js, p.Js_bias, tau);
+    return dense_solve(p, tau);
   }
-  VectorXd tau() const { return vector_of(solver_.solution().tau, 6); }
-  VectorXd achieved() {
-    return vector_of(solver_.solution().achieved, solver_.problem().task_rows);
-  }
-  VectorXd commanded() { return vector_of(solver_.problem().u, solver_.problem().task_rows); }
+  Matrix tau() const { return vector_of(solver_.solution().tau, 6); }
+  Matrix achieved() { return vector_of(solver_.solution().achieved, solver_.problem().task_rows); }
+  Matrix commanded() { return vector_of(solver_.problem().u, solver_.problem().task_rows); }
   // J q̈ + J̇ q̇ of all task rows for joint accelerations of the dense solve.
-  VectorXd task_acceleration(const VectorXd& qdd) {
+  Matrix task_acceleration(const Matrix& qdd) {
     const tasks::WboscProblem& p = solver_.problem();
-    VectorXd a(p.task_rows);
+    Matrix a(p.task_rows);
     for (int i = 0; i < p.task_rows; ++i) {
-      a(i) = p.J_bias[static_cast<std::size_t>(i)] +
-             Eigen::Map<const VectorXd>(p.J.data() + 12 * i, 12).dot(qdd);
+      a(i) =
+          p.J_bias[static_cast<std::size_t>(i)] + dot(Matrix::vector(p.J.data() + 12 * i, 12), qdd);
     }
     return a;
   }
@@ -73,11 +67,11 @@ TEST_F(WboscOnHume, WhatIsCommandedIsWhatTheEquationsOfMotionGive) {
     next(dual, 50.0);
     solver_.solve();
     const DenseMotion truth = motion(tau());
-    const double scale = std::max(truth.qdd.cwiseAbs().maxCoeff(), 1.0);
-    const VectorXd real = task_acceleration(truth.qdd);
+    const double scale = std::max(truth.qdd.max_abs(), 1.0);
+    const Matrix real = task_acceleration(truth.qdd);
     const int rows = dual ? 4 : 6;  // the first level
-    EXPECT_LE((real - commanded()).head(rows).cwiseAbs().maxCoeff(), kAlgebraBar * scale);
-    EXPECT_LE((real - achieved()).cwiseAbs().maxCoeff(), kAlgebraBar * scale);
+    EXPECT_LE((real - commanded()).head(rows).max_abs(), kAlgebraBar * scale);
+    EXPECT_LE((real - achieved()).max_abs(), kAlgebraBar * scale);
     EXPECT_EQ(solver_.solution().level_rank[0], rows);
   }
 }
@@ -87,8 +81,8 @@ TEST_F(WboscOnHume, PredictedContactForcesAreThoseOfTheEquationsOfMotion) {
     next(i % 2 == 0, 50.0);
     solver_.solve();
     const DenseMotion truth = motion(tau());
-    const VectorXd f = vector_of(solver_.solution().f, static_cast<int>(truth.f.size()));
-    EXPECT_LE((f - truth.f).cwiseAbs().maxCoeff(), kAlgebraBar * truth.f.cwiseAbs().maxCoeff());
+    const Matrix f = vector_of(solver_.solution().f, static_cast<int>(truth.f.size()));
+    EXPECT_LE((f - truth.f).max_abs(), kAlgebraBar * truth.f.max_abs());
   }
 }
 
@@ -97,8 +91,7 @@ TEST_F(WboscOnHume, TorquesAreThoseOfAppendixA) {
     next(i % 2 == 0, 50.0);
     solver_.solve();
     const NaiveSolution naive = naive_wbosc(dense_problem(model_, solver_.problem()));
-    EXPECT_LE((tau() - naive.tau).cwiseAbs().maxCoeff(),
-              kAlgebraBar * naive.tau.cwiseAbs().maxCoeff());
+    EXPECT_LE((tau() - naive.tau).max_abs(), kAlgebraBar * naive.tau.max_abs());
   }
 }
 
@@ -119,8 +112,7 @@ TEST_F(WboscOnHume, ContactsDoNotAccelerateWhateverTheTorque) {
     const NaiveProblem p = dense_problem(model_, solver_.problem());
     solver_.solve();
     const DenseMotion truth = motion(tau());
-    EXPECT_LE((p.Js * truth.qdd + p.Js_bias).cwiseAbs().maxCoeff(),
-              kAlgebraBar * truth.qdd.cwiseAbs().maxCoeff());
+    EXPECT_LE((p.Js * truth.qdd + p.Js_bias).max_abs(), kAlgebraBar * truth.qdd.max_abs());
   }
 }
 
@@ -128,14 +120,13 @@ TEST_F(WboscOnHume, InternalForcesDoNotMoveTheRobot) {
   for (int i = 0; i < kStates; ++i) {
     next(true, 0.0);
     solver_.solve();
-    const VectorXd before = tau();
+    const Matrix before = tau();
     const DenseMotion without = motion(before);
     solver_.problem().F_int[0] = 100.0;
     solver_.solve();
     const DenseMotion with = motion(tau());
-    EXPECT_GT((tau() - before).cwiseAbs().maxCoeff(), 1.0);
-    EXPECT_LE((with.qdd - without.qdd).cwiseAbs().maxCoeff(),
-              kAlgebraBar * without.qdd.cwiseAbs().maxCoeff());
+    EXPECT_GT((tau() - before).max_abs(), 1.0);
+    EXPECT_LE((with.qdd - without.qdd).max_abs(), kAlgebraBar * without.qdd.max_abs());
   }
 }
 
@@ -144,14 +135,13 @@ TEST_F(WboscOnHume, LowerPrioritiesChangeNothingAbove) {
     next(true, 50.0);
     solver_.solve();
     const DenseMotion before = motion(tau());
-    const VectorXd task = task_acceleration(before.qdd).head(4);
+    const Matrix task = task_acceleration(before.qdd).head(4);
     for (int row = 4; row < 10; ++row) solver_.problem().u[static_cast<std::size_t>(row)] += 100.0;
     solver_.solve();
     const DenseMotion after = motion(tau());
-    const double scale = after.qdd.cwiseAbs().maxCoeff();
-    EXPECT_LE((task_acceleration(after.qdd).head(4) - task).cwiseAbs().maxCoeff(),
-              kAlgebraBar * scale);
-    EXPECT_GT((after.qdd - before.qdd).cwiseAbs().maxCoeff(), 1.0);
+    const double scale = after.qdd.max_abs();
+    EXPECT_LE((task_acceleration(after.qdd).head(4) - task).max_abs(), kAlgebraBar * scale);
+    EXPECT_GT((after.qdd - before.qdd).max_abs(), 1.0);
   }
 }
 
@@ -160,12 +150,11 @@ TEST_F(WboscOnHume, EffectiveInertiaIsTheInverseOfTheTasksMobility) {
     next(dual);
     solver_.solve();
     const int rows = dual ? 4 : 6;
-    Eigen::MatrixXd lambda(rows, rows);
+    Matrix lambda(rows, rows);
     solver_.effective_inertia(0, rows, lambda.data());
     const NaiveProblem p = dense_problem(model_, solver_.problem());
-    const Eigen::MatrixXd expected = naive_effective_inertia(p, p.levels[0].J);
-    EXPECT_LE((lambda - expected).cwiseAbs().maxCoeff(),
-              kAlgebraBar * expected.cwiseAbs().maxCoeff());
+    const Matrix expected = naive_effective_inertia(p, p.levels[0].J);
+    EXPECT_LE((lambda - expected).max_abs(), kAlgebraBar * expected.max_abs());
   }
 }
 
@@ -174,9 +163,8 @@ TEST_F(WboscOnHume, AKnownExternalForceIsTakenIntoAccount) {
   for (double& f : solver_.problem().external) f = random_.within(20.0);
   solver_.solve();
   const DenseMotion truth = motion(tau());
-  const double scale = truth.qdd.cwiseAbs().maxCoeff();
-  EXPECT_LE((task_acceleration(truth.qdd) - commanded()).cwiseAbs().maxCoeff(),
-            kAlgebraBar * scale);
+  const double scale = truth.qdd.max_abs();
+  EXPECT_LE((task_acceleration(truth.qdd) - commanded()).max_abs(), kAlgebraBar * scale);
 }
 
 TEST_F(WboscOnHume, ATorqueLimitClampsAndTheAchievedAccelerationSaysSo) {
@@ -184,15 +172,15 @@ TEST_F(WboscOnHume, ATorqueLimitClampsAndTheAchievedAccelerationSaysSo) {
   solver_.solve();
   ASSERT_FALSE(solver_.solution().limited);
   const std::array<double, 6> limits = {2.0, 2.0, 2.0, 2.0, 2.0, 2.0};
-  ASSERT_GT(tau().cwiseAbs().maxCoeff(), 2.0);
+  ASSERT_GT(tau().max_abs(), 2.0);
   solver_.problem().torque_limit = limits.data();
   solver_.solve();
   EXPECT_TRUE(solver_.solution().limited);
-  EXPECT_LE(tau().cwiseAbs().maxCoeff(), 2.0);
+  EXPECT_LE(tau().max_abs(), 2.0);
   const DenseMotion truth = motion(tau());
-  const double scale = truth.qdd.cwiseAbs().maxCoeff();
-  EXPECT_LE((achieved() - task_acceleration(truth.qdd)).cwiseAbs().maxCoeff(), kAlgebraBar * scale);
-  EXPECT_GT((achieved() - commanded()).cwiseAbs().maxCoeff(), 0.1);
+  const double scale = truth.qdd.max_abs();
+  EXPECT_LE((achieved() - task_acceleration(truth.qdd)).max_abs(), kAlgebraBar * scale);
+  EXPECT_GT((achieved() - commanded()).max_abs(), 0.1);
 }
 
 TEST_F(WboscOnHume, ANumberThatIsNotOneIsReportedAndGoneWithTheNextSolve) {

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <array>
 
 #include "tests/support/allocation_guard.h"
@@ -15,8 +14,6 @@
 namespace footfall::tests {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 using tasks::ActiveControl;
 using tasks::ControlSet;
 using tasks::TransitionForm;
@@ -39,7 +36,7 @@ class Controller : public testing::Test {
     fill_dual_set(dual_);
     fill_single_set(single_, model_.point(kLeftFoot).position);
   }
-  VectorXd torque_of(const ControlSet& set) {
+  Matrix torque_of(const ControlSet& set) {
     control_.primary = set;
     control_.has_other = false;
     compute(control_);
@@ -49,7 +46,7 @@ class Controller : public testing::Test {
     const std::array<double, 6> measured{};
     controller_.compute(control, tick_++, measured.data(), tau_.data());
   }
-  VectorXd tau() const { return Eigen::Map<const VectorXd>(tau_.data(), 6); }
+  Matrix tau() const { return Matrix::vector(tau_.data(), 6); }
   // As the controller should have assembled the single-support law.
   NaiveProblem single_problem(const std::vector<double>& u) {
     tasks::Wbosc solver(hume_sizes());
@@ -92,9 +89,8 @@ TEST_F(Controller, ReportsTheAccelerationsThatWereAskedFor) {
 TEST_F(Controller, AssemblesTheLawsOfAppendixA) {
   const std::vector<double> u = {1.0, -2.0, 0.5, 3.0, -1.0, 2.0};
   ask_only(single_, u);
-  const VectorXd expected = naive_wbosc(single_problem(u)).tau;
-  EXPECT_LE((torque_of(single_) - expected).cwiseAbs().maxCoeff(),
-            kBar * expected.cwiseAbs().maxCoeff());
+  const Matrix expected = naive_wbosc(single_problem(u)).tau;
+  EXPECT_LE((torque_of(single_) - expected).max_abs(), kBar * expected.max_abs());
 }
 
 // Capacity for exactly two levels: neither may be folded into the other.
@@ -110,13 +106,13 @@ TEST_F(Controller, TensionNotNamedIsZeroAndNamedTensionIsReported) {
   torque_of(dual_);
   const auto& force = controller_.result().force;
   const auto apart = [&]() {
-    Eigen::Vector3d x, df;
+    Matrix x(3), df(3);
     for (int k = 0; k < 3; ++k) {
       const auto q = static_cast<std::size_t>(k);
       x(k) = model_.point(kRightFoot).position[q] - model_.point(kLeftFoot).position[q];
       df(k) = force[kRightFoot][q] - force[kLeftFoot][q];
     }
-    return -0.5 * x.normalized().dot(df);
+    return -0.5 * dot(x, df) / x.norm();
   };
   EXPECT_NEAR(apart(), 0.0, 1e-7);
   SetBuilder builder(dual_);
@@ -129,9 +125,9 @@ TEST_F(Controller, TensionNotNamedIsZeroAndNamedTensionIsReported) {
 }
 
 TEST_F(Controller, ABlendIsExactAtBothEnds) {
-  const VectorXd single = torque_of(single_);
-  const VectorXd dual = torque_of(dual_);
-  ASSERT_GT((single - dual).cwiseAbs().maxCoeff(), 1.0);
+  const Matrix single = torque_of(single_);
+  const Matrix dual = torque_of(dual_);
+  ASSERT_GT((single - dual).max_abs(), 1.0);
   control_.primary = single_;
   control_.other = dual_;
   control_.has_other = true;
@@ -140,20 +136,20 @@ TEST_F(Controller, ABlendIsExactAtBothEnds) {
   }
   control_.other_weight = 0.0;
   compute(control_);
-  const VectorXd at_zero = tau();
-  const VectorXd primary = Eigen::Map<const VectorXd>(controller_.tau_primary(), 6);
-  EXPECT_EQ((at_zero - primary).cwiseAbs().maxCoeff(), 0.0);
+  const Matrix at_zero = tau();
+  const Matrix primary = Matrix::vector(controller_.tau_primary(), 6);
+  EXPECT_EQ((at_zero - primary).max_abs(), 0.0);
   control_.other_weight = 1.0;
   compute(control_);
-  const VectorXd other = Eigen::Map<const VectorXd>(controller_.tau_other(), 6);
-  EXPECT_EQ((tau() - other).cwiseAbs().maxCoeff(), 0.0);
+  const Matrix other = Matrix::vector(controller_.tau_other(), 6);
+  EXPECT_EQ((tau() - other).max_abs(), 0.0);
   control_.other_weight = 0.25;
   compute(control_);
-  EXPECT_LE((tau() - (0.75 * primary + 0.25 * other)).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LE((tau() - (0.75 * primary + 0.25 * other)).max_abs(), 1e-12);
   // Each law alone is what it is without a transition.
   const ControlSet plain_dual = control_.other, plain_single = control_.primary;
-  EXPECT_LE((torque_of(plain_dual) - other).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_LE((torque_of(plain_single) - primary).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LE((torque_of(plain_dual) - other).max_abs(), 1e-12);
+  EXPECT_LE((torque_of(plain_single) - primary).max_abs(), 1e-12);
 }
 
 TEST_F(Controller, ABlendSharesTheMovingFootsForce) {
@@ -175,7 +171,7 @@ TEST_F(Controller, TheFrozenFormIsTheDualControllerAtFullWeight) {
   const std::vector<double> u = {1.0, -2.0, 0.5, 0.0, 0.0, 0.0};
   ask_only(single_, u);
   ask_only(dual_, {1.0, 0.7, -2.0, 0.5});
-  const VectorXd dual = torque_of(dual_);
+  const Matrix dual = torque_of(dual_);
   const auto f_sw = controller_.result().force[kLeftFoot];
 
   control_.primary = single_;
@@ -187,26 +183,26 @@ TEST_F(Controller, TheFrozenFormIsTheDualControllerAtFullWeight) {
   control_.moving_contacts[0] = kLeftFoot;
   control_.other_weight = 1.0;
   compute(control_);
-  EXPECT_LE((tau() - dual).cwiseAbs().maxCoeff(), kBar * dual.cwiseAbs().maxCoeff());
+  EXPECT_LE((tau() - dual).max_abs(), kBar * dual.max_abs());
 
   const NaiveProblem p = single_problem(u);
-  const MatrixXd Ainv = p.A.inverse();
-  const MatrixXd Lambda_s = (p.Js * Ainv * p.Js.transpose()).inverse();
-  const MatrixXd Ns = MatrixXd::Identity(12, 12) - Ainv * p.Js.transpose() * Lambda_s * p.Js;
-  const MatrixXd UNs = p.U * Ns;
-  const MatrixXd phi = UNs * Ainv * UNs.transpose();
-  const MatrixXd J_star = p.levels[0].J * Ainv * UNs.transpose() * phi.inverse();
-  const MatrixXd Lambda = (J_star * phi * J_star.transpose()).inverse();
-  const MatrixXd J_sw = p.levels[0].J.bottomRows(3);
-  const VectorXd on_ground = -Eigen::Map<const VectorXd>(f_sw.data(), 3);
+  const Matrix Ainv = inverse(p.A);
+  const Matrix Lambda_s = inverse(p.Js * Ainv * p.Js.transpose());
+  const Matrix Ns = Matrix::identity(12) - Ainv * p.Js.transpose() * Lambda_s * p.Js;
+  const Matrix UNs = p.U * Ns;
+  const Matrix phi = UNs * Ainv * UNs.transpose();
+  const Matrix J_star = p.levels[0].J * Ainv * UNs.transpose() * inverse(phi);
+  const Matrix Lambda = inverse(J_star * phi * J_star.transpose());
+  const Matrix J_sw = p.levels[0].J.tail(3);
+  const Matrix on_ground = -Matrix::vector(f_sw.data(), 3);
   control_.transition_entered = false;
   for (const double w : {0.75, 0.3, 0.0}) {
     control_.other_weight = w;
     compute(control_);
-    const VectorXd f_trans =
+    const Matrix f_trans =
         w * Lambda * p.levels[0].J * Ainv * Ns.transpose() * J_sw.transpose() * on_ground;
-    const VectorXd expected = naive_wbosc(p).tau + J_star.transpose() * f_trans;
-    EXPECT_LE((tau() - expected).cwiseAbs().maxCoeff(), kBar * dual.cwiseAbs().maxCoeff());
+    const Matrix expected = naive_wbosc(p).tau + J_star.transpose() * f_trans;
+    EXPECT_LE((tau() - expected).max_abs(), kBar * dual.max_abs());
   }
 }
 
@@ -225,21 +221,21 @@ TEST_F(Controller, TheFrozenForceStaysThatOfEntry) {
   control_.transition_entered = false;
   control_.other_weight = 0.5;
   compute(control_);
-  const VectorXd before = tau();
+  const Matrix before = tau();
   ask_only(control_.other, {5.0});  // the other law is not looked at any more
   compute(control_);
-  EXPECT_EQ((tau() - before).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ((tau() - before).max_abs(), 0.0);
 }
 
 TEST_F(Controller, FromTheStanceFeetTheTorquesAreThoseOfTheWorldWithTheReferenceMovedAlong) {
   for (auto& axis : dual_.axes) axis.kd = 0.0;  // how fast the feet slip is no error of the world's
-  const VectorXd world = torque_of(dual_);
+  const Matrix world = torque_of(dual_);
   dual_.tasks[0].frame = tasks::Frame::stance;
   dual_.axes[0].ref -=
       0.5 * (model_.point(kRightFoot).position[2] + model_.point(kLeftFoot).position[2]);
   for (int i = 0; i < dual_.task_count; ++i) dual_.tasks[static_cast<std::size_t>(i)].fresh = true;
-  const VectorXd stance = torque_of(dual_);
-  EXPECT_LE((stance - world).cwiseAbs().maxCoeff(), kBar * world.cwiseAbs().maxCoeff());
+  const Matrix stance = torque_of(dual_);
+  EXPECT_LE((stance - world).max_abs(), kBar * world.max_abs());
 }
 
 TEST_F(Controller, LimitsAreReported) {
@@ -248,15 +244,12 @@ TEST_F(Controller, LimitsAreReported) {
   control_.primary = single_;
   limited.compute(control_, 0, nullptr, tau_.data());
   EXPECT_TRUE(limited.result().limited);
-  const VectorXd asked = tau();
-  EXPECT_LE((asked - torque_of(single_)).cwiseAbs().maxCoeff(),
-            1e-12 * asked.cwiseAbs().maxCoeff());
-  EXPECT_GT(asked.cwiseAbs().maxCoeff(), 1.0);  // what was asked for, not what a joint can give
+  const Matrix asked = tau();
+  EXPECT_LE((asked - torque_of(single_)).max_abs(), 1e-12 * asked.max_abs());
+  EXPECT_GT(asked.max_abs(), 1.0);  // what was asked for, not what a joint can give
 }
 
-TEST_F(Controller, AnEmptyControlSetIsLimp) {
-  EXPECT_EQ(torque_of(ControlSet{}).cwiseAbs().maxCoeff(), 0.0);
-}
+TEST_F(Controller, AnEmptyControlSetIsLimp) { EXPECT_EQ(torque_of(ControlSet{}).max_abs(), 0.0); }
 
 TEST_F(Controller, ComputingAllocatesNothing) {
   if (!AllocationGuard::counts()) GTEST_SKIP() << "not under sanitizers";

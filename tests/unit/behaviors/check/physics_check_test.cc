@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
 #include <filesystem>
 
 #include "behaviors/check/physics/law.h"
@@ -158,12 +158,15 @@ double printed_eigenvalue(const std::string& text) {
 double largest_eigenvalue(double kappa, double reversal, double height, double T) {
   const double w = std::sqrt(9.81 / height);
   const double C = std::cosh(w * T), S = std::sinh(w * T);
-  Eigen::Matrix2d A;
-  A << C, S / w, w * S, C;
-  const Eigen::Vector2d B(1.0 - C, -w * S);
-  const Eigen::RowVector2d K(1.0 + kappa, 1.0 / (w * std::tanh(w * reversal)));
-  const auto values = Eigen::EigenSolver<Eigen::Matrix2d>(A + B * K).eigenvalues();
-  return std::max(std::abs(values(0)), std::abs(values(1)));
+  // M = [C, S/w; wS, C] + B K, column by row.
+  const double B[2] = {1.0 - C, -w * S};
+  const double K[2] = {1.0 + kappa, 1.0 / (w * std::tanh(w * reversal))};
+  const double trace = 2.0 * C + B[0] * K[0] + B[1] * K[1];
+  const double determinant =
+      (C + B[0] * K[0]) * (C + B[1] * K[1]) - (S / w + B[0] * K[1]) * (w * S + B[1] * K[0]);
+  const std::complex<double> root =
+      std::sqrt(std::complex<double>(trace * trace - 4.0 * determinant));
+  return std::max(std::abs(trace + root), std::abs(trace - root)) / 2.0;
 }
 
 TEST(PhysicsPlanner, ThePrintedSignOfKappaIsRejectedWithItsEigenvalue) {

@@ -3,23 +3,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 
 #include "behaviors/check/physics/configurations.h"
 #include "behaviors/check/physics/law.h"
 #include "behaviors/check/physics/postures.h"
 #include "behaviors/loader.h"
+#include "tests/support/matrix.h"
 #include "tests/unit/behaviors/check/physics_test_support.h"
 
 namespace footfall::tests {
 namespace {
 
-using Eigen::MatrixXd;
 using testing::HasSubstr;
 using testing::StartsWith;
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 TEST(PhysicsRank, YawOnASinglePointFootIsRefusedWhereItIsWritten) {
   const std::string text =
@@ -124,15 +124,14 @@ TEST(PhysicsRank, PosturesAreWithinTheJointsLimitsAndTheSameEveryTime) {
 
 // phi = U N_s A^-1 (U N_s)^T and J A^-1 N_s^T U^T, dense: their ranks by SVD. Singular values that
 // count lie above 1e-2 of the largest on these postures, those that do not below 1e-12.
-int svd_rank(const MatrixXd& m) {
+int svd_rank(const Matrix& m) {
   if (m.size() == 0) return 0;
-  const Eigen::VectorXd s = Eigen::JacobiSVD<MatrixXd>(m).singularValues();
-  return static_cast<int>((s.array() > 1e-8 * s(0)).count());
+  const std::vector<double> s = singular_values(m);
+  return static_cast<int>(
+      std::count_if(s.begin(), s.end(), [&](double value) { return value > 1e-8 * s[0]; }));
 }
 
-MatrixXd dense(const double* rows, int count, int n) {
-  return Eigen::Map<const Matrix>(rows, count, n);
-}
+Matrix dense(const double* rows, int count, int n) { return Matrix::of_rows(rows, count, n); }
 
 void expect_dense_ranks(const std::string& text) {
   const auto behavior = load(text);
@@ -145,16 +144,16 @@ void expect_dense_ranks(const std::string& text) {
     model.update(posture);
     std::vector<double> mass(static_cast<std::size_t>(n * n));
     model.mass_matrix(mass.data());
-    const MatrixXd inverse = dense(mass.data(), n, n).inverse();
-    MatrixXd Js(3 * static_cast<int>(control.contacts.size()), n);
+    const Matrix A_inv = inverse(dense(mass.data(), n, n));
+    Matrix Js(3 * static_cast<int>(control.contacts.size()), n);
     for (std::size_t i = 0; i < control.contacts.size(); ++i) {
-      Js.middleRows(3 * static_cast<int>(i), 3) =
-          dense(model.point(control.contacts[i]).jacobian.data(), 3, n);
+      Js.set_block(3 * static_cast<int>(i), 0,
+                   dense(model.point(control.contacts[i]).jacobian.data(), 3, n));
     }
-    MatrixXd J(static_cast<int>(rows.size()), n);
+    Matrix J(static_cast<int>(rows.size()), n);
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const int axis = rows[r].axis->axis;
-      Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(n);
+      Matrix row(1, n);
       const auto type = rows[r].task->type;
       if (type == tasks::TaskType::com_position) {
         row = dense(model.com().jacobian.data(), 3, n).row(axis);
@@ -162,25 +161,26 @@ void expect_dense_ranks(const std::string& text) {
         row = dense(model.point(rows[r].task->point).jacobian.data(), 3, n).row(axis);
       } else if (type == tasks::TaskType::body_orientation) {
         const double yaw = model.rpy()[2];
-        const Eigen::Vector3d axes[3] = {
+        const std::array<double, 3> axes[3] = {
             {std::cos(yaw), std::sin(yaw), 0}, {-std::sin(yaw), std::cos(yaw), 0}, {0, 0, 1}};
-        row = axes[axis].transpose() * dense(model.base_rotation().jacobian.data(), 3, n);
+        row = Matrix::vector(axes[axis]).transpose() *
+              dense(model.base_rotation().jacobian.data(), 3, n);
       } else {
-        row(6 + axis) = 1.0;
+        row(0, 6 + axis) = 1.0;
       }
-      J.row(static_cast<int>(r)) = row;
+      J.set_row(static_cast<int>(r), row);
     }
     // A^-1 N_s^T U^T: what torques do to accelerations under the contacts.
-    const MatrixXd weighted = Js * inverse * Js.transpose();
-    const MatrixXd free = inverse - inverse * Js.transpose() * weighted.inverse() * Js * inverse;
-    const MatrixXd act = free.rightCols(n - 6);
+    const Matrix weighted = Js * A_inv * Js.transpose();
+    const Matrix free = A_inv - A_inv * Js.transpose() * inverse(weighted) * Js * A_inv;
+    const Matrix act = free.block(0, 6, n, n - 6);
     const behaviors::RowRanks found = law.ranks(control.contacts, rows);
-    EXPECT_EQ(found.actuated, svd_rank(act.bottomRows(n - 6)));
+    EXPECT_EQ(found.actuated, svd_rank(act.tail(n - 6)));
     EXPECT_EQ(found.covered, svd_rank(J * act));
     for (std::size_t r = 1; r <= rows.size(); ++r) {  // what each row adds to those before it
       const int count = static_cast<int>(r);
       EXPECT_EQ(std::accumulate(found.added.begin(), found.added.begin() + count, 0),
-                svd_rank(J.topRows(count) * act));
+                svd_rank(J.head(count) * act));
     }
   }
 }
