@@ -40,11 +40,13 @@ print_stages() {
   printf '%-28s %8d\n' total "$SECONDS"
 }
 
-# configure PRESET: configures quietly; prints the output only on failure.
+# configure PRESET [ARGUMENTS...]: configures quietly; prints the output only on failure.
 configure() {
+  local preset=$1
+  shift
   mkdir -p out
-  if ! cmake --preset "$1" >"out/configure-$1.log" 2>&1 </dev/null; then
-    cat "out/configure-$1.log" >&2
+  if ! cmake --preset "$preset" "$@" >"out/configure-$preset.log" 2>&1 </dev/null; then
+    cat "out/configure-$preset.log" >&2
     return 1
   fi
 }
