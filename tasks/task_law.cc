@@ -2,6 +2,7 @@
 #include "tasks/task_law.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/index.h"
 
@@ -62,7 +63,8 @@ void evaluate_task(const TaskCommand& task, const AxisCommand* axes, const LawCo
     double& integral = context.memory->integral(task.instance, a.axis);
     if (context.memory->claim(task.instance, a.axis, context.tick)) {
       if (task.fresh || a.fresh) integral = 0.0;
-      integral += out[i].error * context.period;
+      // One bad measurement must not stay in the integral for ever.
+      if (std::isfinite(out[i].error)) integral += out[i].error * context.period;
       if (a.integral_limit > 0.0) {
         integral = std::clamp(integral, -a.integral_limit, a.integral_limit);
       }

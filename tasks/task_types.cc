@@ -12,6 +12,7 @@ constexpr bool is_complete() {
     const TaskTypeInfo& row = kTaskTypes[k].info;
     if (kTaskTypes[k].type != static_cast<TaskType>(k)) return false;
     if (row.name.empty() || row.doc.empty() || row.axes.empty() != row.of_joints()) return false;
+    if (row.rows == nullptr || row.measured == nullptr) return false;
   }
   return true;
 }

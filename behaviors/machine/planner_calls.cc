@@ -44,7 +44,7 @@ PlannerCalls::PlannerCalls(const Behavior& behavior, Statechart& statechart,
 }
 
 void PlannerCalls::start() noexcept {
-  if (behavior_.planners.empty()) return;
+  if (!behavior_.has_robot) return;  // without planners, too: a reload may bring some
   const auto rpy = signal3(behavior_.layout.base_rpy);
   const auto base = signal3(behavior_.layout.base_pos);
   const double sr = std::sin(rpy[0]), cr = std::cos(rpy[0]);

@@ -44,7 +44,8 @@ double ControlMerge::measured(const TaskSpec& spec, const tasks::ControlSet& set
   }
   if (tasks::info(spec.type).is_rate && axis < 2 && spec.frame == tasks::Frame::heading) {
     const double yaw = position(tasks::TaskType::body_orientation, -1, 2);
-    const double x = position(spec.type, -1, 0), y = position(spec.type, -1, 1);
+    const double x = position(spec.type, spec.point, 0);
+    const double y = position(spec.type, spec.point, 1);
     return axis == 0 ? std::cos(yaw) * x + std::sin(yaw) * y
                      : std::cos(yaw) * y - std::sin(yaw) * x;
   }

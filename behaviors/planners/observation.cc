@@ -25,7 +25,8 @@ void filter_velocity(PlannerObservation& seen, const FootPlannerSpec& spec,
                      const PendulumMeasurement& measured, double period) noexcept {
   const double tau = spec.velocity_filter;
   std::array<double, 2>& v = seen.velocity;
-  if (!seen.primed || !(tau > 0.0) || !measured.supported) {
+  const bool valid = std::isfinite(v[0]) && std::isfinite(v[1]);
+  if (!seen.primed || !(tau > 0.0) || !measured.supported || !valid) {
     v = {measured.com_vel[0], measured.com_vel[1]};
     return;
   }

@@ -7,14 +7,15 @@
 namespace footfall::engine {
 namespace {
 constexpr std::size_t kEvents = 256;  // more than the machine's queue holds
-constexpr std::size_t kPlans = 64;    // answers that one tick may get
+constexpr std::size_t kPlans = 64;    // answers that one tick may get, at least
 }  // namespace
 
 void InputTrace::size_for(const behaviors::Behavior& behavior) {
   writes.reserve(behavior.values.size());
   events.reserve(kEvents);
-  plans.reserve(kPlans);
-  planned.reserve(kPlans);
+  const std::size_t most = std::max(kPlans, behavior.invokes.size());
+  plans.reserve(most);
+  planned.reserve(most);
 }
 
 void InputTrace::clear() noexcept {

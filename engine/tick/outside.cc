@@ -95,6 +95,7 @@ void Outside::wait() noexcept {
 void Outside::take_over(const Outside& old, const behaviors::Machine& machine) noexcept {
   planners_.take_over(old.planners_);
   limit_steps_ = old.limit_steps_;
+  late_ = old.late_;  // of the tick to come
   taken_over_ = true;
   watch_.remember(machine.parameters());
 }

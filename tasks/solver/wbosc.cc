@@ -280,6 +280,7 @@ void Wbosc::finish() noexcept {
     tau[j] = problem_.torque_limit ? within_limit(asked, problem_.torque_limit[j]) : asked;
     solution_.limited |= tau[j] != asked;
   }
+  if (!solution_.finite) std::fill_n(tau, na, 0.0);  // as it is sent: forces stay numbers
   contact_forces(tau, solution_.f.data());
   for (int i = 0; i < problem_.internal_rows; ++i) {
     double value = 0.0;

@@ -188,6 +188,8 @@ TEST_F(WboscOnHume, ANumberThatIsNotOneIsReportedAndGoneWithTheNextSolve) {
   solver_.problem().u[2] = std::numeric_limits<double>::quiet_NaN();
   solver_.solve();
   EXPECT_FALSE(solver_.solution().finite);
+  EXPECT_EQ(tau().max_abs(), 0.0);
+  EXPECT_TRUE(std::isfinite(achieved().max_abs()));
   solver_.problem().u[2] = 0.0;
   solver_.solve();
   EXPECT_TRUE(solver_.solution().finite);
