@@ -74,8 +74,10 @@ void Executive::tick() {
   compute();
   if (settings_.exchange != nullptr && loop_->failed_by() != core::Fault::count) {
     for (TickObserver* const observer : observers_) observer->withdrawn(*loop_);
-    if (ControlLoop* const before = settings_.exchange->take_back()) go_on(*before);
-    compute();
+    if (ControlLoop* const before = settings_.exchange->take_back()) {
+      go_on(*before);
+      compute();  // a loop never computes the same tick twice
+    }
   }
   for (TickObserver* const observer : observers_) observer->after_compute(*loop_);
   loop_->actuate();

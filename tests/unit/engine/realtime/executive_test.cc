@@ -240,7 +240,7 @@ TEST(Executive, GoesOnWithALoopThatTookOverAndBackWhenItFails) {
 }
 
 TEST(Executive, ItsOwnPartOfATickAllocatesNothing) {
-  if (!AllocationGuard::counts()) GTEST_SKIP();
+  if (!AllocationGuard::counts()) GTEST_SKIP() << "not under sanitizers";
   Robot robot;
   Exchange exchange(robot.loop, load_inline(kHang), robot.hardware, nullptr, 50);
   Executive executive(robot.loop, {.exchange = &exchange});
