@@ -1,5 +1,6 @@
 // What is measured and commanded in a tick, and one table of it: the columns of the log, replay,
-// and sensors that fail on purpose derive from the table. A member without a row does not compile.
+// and sensors that fail on purpose derive from the table. A member without a row does not compile
+// (sensor_fields.cc).
 #pragma once
 
 #include <array>
@@ -108,36 +109,5 @@ template <typename Table, typename Visit>
 constexpr void for_each_field(const Table& table, Visit&& visit) {
   std::apply([&](const auto&... field) { (visit(field), ...); }, table);
 }
-
-namespace detail {
-
-struct Anything {
-  template <typename T>
-  constexpr operator T() const;  // NOLINT: stands for the initial value of any member
-};
-template <typename T, std::size_t... k>
-constexpr bool has_members(std::index_sequence<k...>) {
-  return requires { T{(static_cast<void>(k), Anything{})...}; };
-}
-template <typename T, std::size_t n = 64>
-constexpr std::size_t member_count() {
-  if constexpr (n == 0 || has_members<T>(std::make_index_sequence<n>())) {
-    return n;
-  } else {
-    return member_count<T, n - 1>();
-  }
-}
-template <typename... Table>
-inline constexpr std::size_t kRowCount = (std::tuple_size_v<std::remove_cvref_t<Table>> + ...);
-
-}  // namespace detail
-
-static_assert(detail::member_count<Sensors>() ==
-                  1 + detail::kRowCount<decltype(kSensorFields), decltype(kFlagFields)>,
-              "each member of Sensors but time_ns has one row in a table above");
-static_assert(detail::member_count<Commands>() == detail::kRowCount<decltype(kCommandFields)>,
-              "each member of Commands has one row in the table above");
-static_assert(core::kMaxJoints != core::kMaxContacts,
-              "arrays by joint and by contact differ in length");
 
 }  // namespace footfall::hal

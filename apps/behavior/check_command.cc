@@ -11,6 +11,7 @@
 #include "apps/suites/sweep_setup.h"
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
+#include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
 #include "lab/suite/files.h"
@@ -162,7 +163,7 @@ int check(const CheckOptions& options) {
   if (options.json) {
     const nlohmann::ordered_json out = {{"files", std::move(results)}};
     // Invalid UTF-8 in a file is replaced instead of raising an exception.
-    fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", core::json_text(out));
   } else if (options.files.size() > 1 || errors + warnings > 0) {
     fmt::print("{} checked: {}, {}\n", counted(static_cast<int>(options.files.size()), "file"),
                counted(errors, "error"), counted(warnings, "warning"));

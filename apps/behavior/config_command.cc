@@ -9,6 +9,7 @@
 #include "behaviors/explain/explain_machine.h"
 #include "behaviors/language/language.h"
 #include "behaviors/loader.h"
+#include "core/text/json_text.h"
 #include "core/yaml/explain.h"
 #include "core/yaml_text/write.h"
 #include "lab/scenario/keys.h"
@@ -137,7 +138,7 @@ void print_json(const core::Explanation& explanation, const std::vector<std::str
   if (known && !explanation.key->fallback.empty()) {
     out["default"] = std::string(explanation.key->fallback);
   }
-  fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  fmt::print("{}\n", core::json_text(out));
 }
 
 // The full path of a key given by its last part only, e.g. `parameters.goal` for `goal`.

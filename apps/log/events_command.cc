@@ -10,6 +10,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "core/text/json_text.h"
 #include "core/text/printable.h"
 #include "core/units/units.h"
 #include "lab/log/reader.h"
@@ -55,7 +56,7 @@ std::string text_of(const lab::LoggedEvent& event) {
 std::string json_of(const lab::LoggedEvent& event) {
   const nlohmann::ordered_json line = {
       {"time_s", event.time}, {"kind", event.kind}, {"name", event.name}, {"detail", event.detail}};
-  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return core::json_text(line) + "\n";
 }
 
 void print_events(const EventsOptions& options) {

@@ -8,6 +8,7 @@
 #include "apps/reference/reference.h"
 #include "apps/shared/commands.h"
 #include "behaviors/language/language.h"
+#include "core/text/json_text.h"
 #include "lab/scenario/keys.h"
 #include "lab/sweep/plan/keys.h"
 #include "model/robot/keys.h"
@@ -31,7 +32,7 @@ void add_schema_command(CLI::App& app, int& exit_code) {
   command->footer("Example: footfall schema behavior > behavior.schema.json   (docs/editor.md)");
   command->callback([kind, &exit_code] {
     for (const core::FileTable* file : file_tables()) {
-      if (file->kind == *kind) fmt::print("{}\n", json_schema(*file).dump(2));
+      if (file->kind == *kind) fmt::print("{}\n", core::json_text(json_schema(*file), 2));
     }
     exit_code = kGood;
   });

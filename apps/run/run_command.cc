@@ -9,6 +9,7 @@
 #include "apps/run/run_reload.h"
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "engine/realtime/executive.h"
 #include "lab/run/run.h"
@@ -105,8 +106,9 @@ int show_result(const RunOptions& options, const lab::RunIdentity& id, const lab
   std::FILE* const text = options.json ? stderr : stdout;
   if (log) {
     core::write_whole_file(options.log + "/summary.json",
-                           lab::summary_json(id, result, true).dump(2) + "\n");
-    core::write_whole_file(options.log + "/timing.json", lab::timing_json(result).dump(2) + "\n");
+                           core::json_text(lab::summary_json(id, result, true), 2) + "\n");
+    core::write_whole_file(options.log + "/timing.json",
+                           core::json_text(lab::timing_json(result), 2) + "\n");
   }
   if (!options.quiet) {
     std::fputs(lab::summary_text(id, result).c_str(), text);
@@ -127,7 +129,7 @@ int show_result(const RunOptions& options, const lab::RunIdentity& id, const lab
   if (options.json) {
     auto json = lab::summary_json(id, result);
     if (link) json["live"] = live_json(options.live, *link);
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", core::json_text(json));
   }
   return report_code;
 }

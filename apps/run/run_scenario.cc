@@ -11,6 +11,7 @@
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
 #include "behaviors/check/physics/check.h"
+#include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "hal/sensors/faults.h"
 #include "lab/judge/run.h"
@@ -70,10 +71,12 @@ lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors) {
 void write_results(const RunOptions& options, const lab::ScenarioDescription& scenario,
                    const lab::RunIdentity& id, const lab::ScenarioRun& done) {
   const auto figures = lab::summary_json(id, done.run, true);
-  core::write_whole_file(options.log + "/summary.json", figures.dump(2) + "\n");
-  core::write_whole_file(options.log + "/timing.json", lab::timing_json(done.run).dump(2) + "\n");
-  core::write_whole_file(options.log + "/result.json",
-                         lab::outcome_json(scenario, done.outcome, figures).dump(2) + "\n");
+  core::write_whole_file(options.log + "/summary.json", core::json_text(figures, 2) + "\n");
+  core::write_whole_file(options.log + "/timing.json",
+                         core::json_text(lab::timing_json(done.run), 2) + "\n");
+  core::write_whole_file(
+      options.log + "/result.json",
+      core::json_text(lab::outcome_json(scenario, done.outcome, figures), 2) + "\n");
   if (scenario.golden) {
     lab::write_golden(options.log + "/golden.csv", *scenario.golden, done.trace);
   }
@@ -127,7 +130,7 @@ int run_scenario_file(RunOptions options) {
   }
   if (options.json) {
     const auto json = lab::outcome_json(scenario, done.outcome, lab::summary_json(id, done.run));
-    fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", core::json_text(json));
   }
   return done.outcome.passed ? report_code : kRobotFailed;
 }

@@ -11,6 +11,7 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "core/units/units.h"
 #include "lab/process/pool.h"
@@ -79,7 +80,7 @@ std::vector<std::string> failed_before(const TestOptions& options) {
   } catch (const std::runtime_error&) {
     throw InputError(session_file(options) + ": error: no session to take failures from");
   }
-  const auto session = nlohmann::json::parse(text, nullptr, false);
+  const auto session = core::parse_json(text);
   std::vector<std::string> files;
   try {
     for (const auto& scenario : session.at("scenarios")) {
@@ -205,7 +206,7 @@ int exit_code_of(const Suite& suite) {
 void write_results(const TestOptions& options, const Suite& suite) {
   // Invalid UTF-8 (a child's stderr) is replaced instead of raising an exception.
   const auto text = [](const nlohmann::ordered_json& json) {
-    return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return core::json_text(json, 1) + "\n";
   };
   const std::string session = text(lab::suite_json(suite));
   core::write_whole_file(session_file(options), session);

@@ -11,6 +11,7 @@
 #include "apps/tune/view/text.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/index.h"
+#include "core/text/json_text.h"
 #include "core/yaml/glob.h"
 
 namespace footfall::apps {
@@ -22,9 +23,7 @@ std::vector<int> all_parameters(const TuneModel& model) {
   return all;
 }
 
-void print_json(const nlohmann::ordered_json& json) {
-  fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-}
+void print_json(const nlohmann::ordered_json& json) { fmt::print("{}\n", core::json_text(json)); }
 
 int explain(const std::vector<std::string>& problems) {
   for (const std::string& problem : problems) fmt::print(stderr, "error: {}\n", problem);

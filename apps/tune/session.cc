@@ -9,6 +9,7 @@
 #include "apps/shared/commands.h"
 #include "apps/tune/view/text.h"
 #include "core/index.h"
+#include "core/text/json_text.h"
 #include "core/text/printable.h"
 
 namespace footfall::apps {
@@ -78,8 +79,7 @@ int send_and_explain(TuneSession& session, const footfall_lcm::request_t& reques
     return kMachineFailed;
   }
   if (options.json) {
-    fmt::print("{}\n",
-               answer_json(*answer).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", core::json_text(answer_json(*answer)));
   } else if (answer->accepted != 0) {
     fmt::print("{}\n", answer_text(*answer));
   }

@@ -10,6 +10,7 @@
 #include "apps/tune/model/options.h"
 #include "apps/tune/session.h"
 #include "apps/tune/view/text.h"
+#include "core/text/json_text.h"
 
 namespace footfall::apps {
 namespace {
@@ -49,9 +50,7 @@ bool print_out(const std::string& text) {
   return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
 }
 
-std::string json_line(const nlohmann::ordered_json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
+std::string json_line(const nlohmann::ordered_json& json) { return core::json_text(json) + "\n"; }
 
 struct Watch {
   std::vector<WatchColumn> columns;

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <unordered_map>
 
 #include "core/index.h"
+#include "core/same_bits.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -97,7 +97,7 @@ bool same_expression(const Behavior& from, int a, const Behavior& to, int b,
     if (x.op != y.op) return false;
     bool same = x.index == y.index;
     if (x.op == Op::constant) {
-      same = std::bit_cast<std::uint64_t>(x.value) == std::bit_cast<std::uint64_t>(y.value);
+      same = core::same_bits(x.value, y.value);
     } else if (x.op == Op::parameter) {
       same = map.slots[at(y.index)] == x.index;
     } else if (x.op == Op::signal) {

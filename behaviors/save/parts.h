@@ -103,7 +103,4 @@ std::vector<std::string> reasons_against_result(const SaveSource& old, const std
                                                 const std::vector<KeyPath>& allowed,
                                                 std::vector<std::string>& notes);
 
-// Whether two doubles have identical bits.
-bool same_bits(double a, double b);
-
 }  // namespace footfall::behaviors

@@ -1,10 +1,10 @@
 // Locations of values, and the edits that change them; see parts.h.
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 
 #include "behaviors/load/control/gains.h"
 #include "behaviors/save/parts.h"
+#include "core/same_bits.h"
 #include "core/units/quantity_text.h"
 #include "core/yaml/glob.h"
 #include "core/yaml_text/write.h"
@@ -76,10 +76,10 @@ std::string spread_text(const SaveSource& source, const Wanted& wanted, const st
       source.behavior.parameters[static_cast<std::size_t>(wanted.parameter)].slot)];
   const bool joints = are_joints(source, wanted.home.axes);
   const bool some_stay =
-      std::ranges::any_of(wanted.values, [&](double value) { return same_bits(value, old); });
+      std::ranges::any_of(wanted.values, [&](double value) { return core::same_bits(value, old); });
   std::string out = joints && some_stay ? key_and_value("*", like) : "";
   for (std::size_t k = 0; k < wanted.values.size(); ++k) {
-    if (joints && some_stay && same_bits(wanted.values[k], old)) continue;
+    if (joints && some_stay && core::same_bits(wanted.values[k], old)) continue;
     const std::string text = core::quantity_text(wanted.values[k], like);
     out += out.empty() ? "" : ", ";
     out += joints ? key_and_value(wanted.home.axes[k], text) : text;
@@ -97,7 +97,7 @@ void edit_map(const Wanted& wanted, const double* old, std::vector<NodeEdit>& ed
         {&node, wanted.home.axes[k], near, core::quantity_text(wanted.values[k], like)});
   };
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (entries[k] == nullptr && !same_bits(wanted.values[k], old[k])) add(k, "", node.mark);
+    if (entries[k] == nullptr && !core::same_bits(wanted.values[k], old[k])) add(k, "", node.mark);
   }
   for (const core::YamlEntry& entry : node.entries) {
     std::vector<std::size_t> served;
@@ -105,24 +105,20 @@ void edit_map(const Wanted& wanted, const double* old, std::vector<NodeEdit>& ed
       if (entries[k] == &entry) served.push_back(k);
     }
     if (served.empty()) continue;
-    const auto stays = [&](std::size_t k) { return same_bits(wanted.values[k], old[k]); };
+    const auto stays = [&](std::size_t k) { return core::same_bits(wanted.values[k], old[k]); };
     const bool some_stay = std::ranges::any_of(served, stays);
     const double common = wanted.values[served.front()];
     if (!some_stay) {
       edits.push_back({&entry.value, "", {}, core::quantity_text(common, entry.value.scalar)});
     }
     for (const std::size_t k : served) {
-      const bool covered = some_stay ? stays(k) : same_bits(wanted.values[k], common);
+      const bool covered = some_stay ? stays(k) : core::same_bits(wanted.values[k], common);
       if (!covered) add(k, entry.value.scalar, entry.key_mark);
     }
   }
 }
 
 }  // namespace
-
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
 
 bool begins_with(const KeyPath& path, const KeyPath& head) {
   return path.size() >= head.size() && std::equal(head.begin(), head.end(), path.begin());
@@ -169,13 +165,13 @@ std::vector<NodeEdit> edits_in_place(const SaveSource& source, const Wanted& wan
   } else if (node.is_sequence()) {
     for (std::size_t k = 0; k < wanted.values.size() && k < node.items.size(); ++k) {
       const core::YamlNode& item = node.items[k];
-      if (!same_bits(wanted.values[k], old[k])) {
+      if (!core::same_bits(wanted.values[k], old[k])) {
         edits.push_back({&item, "", {}, core::quantity_text(wanted.values[k], item.scalar)});
       }
     }
   } else {
     const bool one = std::ranges::all_of(
-        wanted.values, [&](double value) { return same_bits(value, wanted.values.front()); });
+        wanted.values, [&](double value) { return core::same_bits(value, wanted.values.front()); });
     edits.push_back({&node,
                      "",
                      {},
@@ -195,8 +191,8 @@ std::string whole_text(const SaveSource& source, const Wanted& wanted) {
     const double old = source.behavior.values[static_cast<std::size_t>(info.slot) + k];
     const std::string& written = node.items[k].scalar;
     out += out.empty() ? "" : ", ";
-    out +=
-        same_bits(wanted.values[k], old) ? written : core::quantity_text(wanted.values[k], written);
+    out += core::same_bits(wanted.values[k], old) ? written
+                                                  : core::quantity_text(wanted.values[k], written);
   }
   return "[" + out + "]";
 }

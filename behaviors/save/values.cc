@@ -15,6 +15,7 @@
 #include "behaviors/load/steps.h"
 #include "behaviors/loader.h"
 #include "behaviors/save/parts.h"
+#include "core/same_bits.h"
 #include "core/yaml_text/write.h"
 
 namespace footfall::behaviors {
@@ -76,7 +77,7 @@ void collect_wanted(SavePlanner& planner, const std::vector<NamedValue>& values)
     all.resize(static_cast<std::size_t>(info.size));
     for (std::size_t k = 0; k < size; ++k) {
       auto& one = all[part.component < 0 ? k : static_cast<std::size_t>(part.component)];
-      if (one && !same_bits(*one, value.values[k])) {
+      if (one && !core::same_bits(*one, value.values[k])) {
         planner.refuse({}, value.name, "it is asked for twice, with different values");
       }
       one = value.values[k];
@@ -89,7 +90,7 @@ void collect_wanted(SavePlanner& planner, const std::vector<NamedValue>& values)
     for (std::size_t k = 0; k < given.size(); ++k) {
       const double old = behavior.values[static_cast<std::size_t>(info.slot) + k];
       wanted.values.push_back(given[k].value_or(old));
-      differs = differs || !same_bits(wanted.values.back(), old);
+      differs = differs || !core::same_bits(wanted.values.back(), old);
     }
     if (!differs) continue;
     wanted.home = find_home(planner.source, info);

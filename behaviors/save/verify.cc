@@ -8,6 +8,7 @@
 #include "behaviors/compile.h"
 #include "behaviors/loader.h"
 #include "behaviors/save/parts.h"
+#include "core/same_bits.h"
 #include "core/yaml_text/edit.h"
 
 namespace footfall::behaviors {
@@ -42,7 +43,7 @@ std::optional<KeyPath> first_difference(const core::YamlNode& a, const core::Yam
 
 bool same_parameter(const ParameterInfo& a, const ParameterInfo& b) {
   return a.name == b.name && a.size == b.size && a.slot == b.slot && a.dimension == b.dimension &&
-         same_bits(a.min, b.min) && same_bits(a.max, b.max) && a.live == b.live &&
+         core::same_bits(a.min, b.min) && core::same_bits(a.max, b.max) && a.live == b.live &&
          a.variable == b.variable && a.gain == b.gain && a.bare == b.bare;
 }
 
@@ -65,7 +66,7 @@ void compare_values(const Behavior& old, const Behavior& now, const std::vector<
       const auto slot = static_cast<std::size_t>(info.slot + k);
       const bool asked = found != wanted.end();
       const double expected = asked ? found->values[static_cast<std::size_t>(k)] : old.values[slot];
-      if (same_bits(now.values[slot], expected)) continue;
+      if (core::same_bits(now.values[slot], expected)) continue;
       reasons.push_back(
           asked ? fmt::format("{}: it would read back as {}, not {}", info.name, now.values[slot],
                               expected)

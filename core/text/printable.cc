@@ -26,6 +26,24 @@ std::size_t sequence_length(std::string_view text) {
   return overlong || surrogate || code > 0x10ffff ? 0 : length;
 }
 
+// Control characters other than those of `kept`, and invalid bytes, as `?`; at most `most` bytes.
+std::string without_controls(std::string_view text, std::string_view kept, std::size_t most) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t length = sequence_length(text);
+    const auto lead = static_cast<unsigned char>(text[0]);
+    // U+0080 to U+009F (bytes C2 80 to C2 9F) are control characters, too.
+    const bool control =
+        ((lead < 0x20 || lead == 0x7f) && kept.find(text[0]) == std::string_view::npos) ||
+        (lead == 0xc2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xa0);
+    const std::string_view piece = length == 0 || control ? "?" : text.substr(0, length);
+    if (out.size() + piece.size() > most) break;
+    out += piece;
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<BadText> find_bad_text(std::string_view text) {
@@ -59,20 +77,11 @@ std::string on_one_line(std::string_view text) {
 }
 
 std::string printable(std::string_view text, std::size_t most) {
-  std::string out;
-  while (!text.empty()) {
-    const std::size_t length = sequence_length(text);
-    const auto lead = static_cast<unsigned char>(text[0]);
-    // U+0080 to U+009F (bytes C2 80 to C2 9F) are control characters, too.
-    const bool control =
-        lead < 0x20 || lead == 0x7f ||
-        (lead == 0xc2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xa0);
-    const std::string_view piece = length == 0 || control ? "?" : text.substr(0, length);
-    if (out.size() + piece.size() > most) break;
-    out += piece;
-    text.remove_prefix(length == 0 ? 1 : length);
-  }
-  return out;
+  return without_controls(text, "", most);
+}
+
+std::string printable_lines(std::string_view text) {
+  return without_controls(text, "\t\n", std::string_view::npos);
 }
 
 }  // namespace footfall::core

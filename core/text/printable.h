@@ -28,4 +28,7 @@ std::string on_one_line(std::string_view text);
 // truncated to `most` bytes at a character boundary.
 std::string printable(std::string_view text, std::size_t most);
 
+// The same for text of several lines: keeps tabs and line feeds, and all of it.
+std::string printable_lines(std::string_view text);
+
 }  // namespace footfall::core

@@ -1,19 +1,11 @@
 // The door's part of a bumpless transfer: continues the edits of the former behavior; see door.h.
-#include <bit>
 
 #include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
+#include "core/same_bits.h"
 #include "engine/edits/door.h"
 
 namespace footfall::engine {
-namespace {
-
-bool same_bits(double a, double b) noexcept {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-}  // namespace
-
 void EditDoor::take_over(EditDoor& old, const TakeOver& change) noexcept {
   moving_.clear();
   for (const behaviors::ParameterInfo& info : change.to.parameters) {
@@ -39,12 +31,12 @@ void EditDoor::take_slot(const EditDoor& old, const behaviors::ParameterInfo& in
   const double now = change.before[was];
   const double goal = running.ticks > 0 ? running.to : now;
   const bool outside = info.has_range() && (goal < info.min || goal > info.max);
-  const bool same_file = same_bits(change.from.values[was], change.to.values[at(slot)]);
+  const bool same_file = core::same_bits(change.from.values[was], change.to.values[at(slot)]);
   if ((info.variable || same_file) && !outside) {
     if (running.ticks == 0) return;
     ramps_[at(slot)] = running;
   } else {
-    if (same_bits(own, now)) return;
+    if (core::same_bits(own, now)) return;
     ramps_[at(slot)] = {now, own, change.tick, change.periods, true};
   }
   moving_.push_back(slot);

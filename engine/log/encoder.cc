@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/index.h"
+#include "core/text/json_text.h"
 #include "core/units/units.h"
 #include "engine/log/proto_bytes.h"
 #include "engine/log/schema.h"
@@ -22,17 +23,13 @@ std::size_t block_bytes(std::size_t columns, int rows) {
   return columns + 64 + at(rows) * (sizeof(std::uint64_t) + 5);
 }
 
-std::string json_text(const nlohmann::ordered_json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
 std::string signals_json(const core::SignalTable& table) {
   auto list = nlohmann::ordered_json::array();
   for (const core::SignalInfo& info : table.infos()) {
     list.push_back(
         {{"name", info.name}, {"unit", core::unit_text(info.dimension)}, {"doc", info.doc}});
   }
-  return json_text(list);
+  return core::json_text(list);
 }
 
 std::size_t parameter_bytes(const LogHeader& header) {
@@ -74,10 +71,10 @@ LogEncoder::LogEncoder(const std::string& path, const core::SignalTable& table,
 void LogEncoder::write_head(const core::SignalTable& table, const LogHeader& header) {
   mcap_.add_metadata("run", header.run);
   mcap_.add_metadata("signals", {{"signals", signals_json(table)}});
-  mcap_.add_metadata("columns", {{"columns", json_text(layout_.names())},
-                                 {"joints", json_text(header.joints)},
-                                 {"contacts", json_text(header.contacts)}});
-  mcap_.add_metadata("events", {{"events", json_text(header.events)}});
+  mcap_.add_metadata("columns", {{"columns", core::json_text(layout_.names())},
+                                 {"joints", core::json_text(header.joints)},
+                                 {"contacts", core::json_text(header.contacts)}});
+  mcap_.add_metadata("events", {{"events", core::json_text(header.events)}});
   mcap_.add_metadata("setup", {{"setup", header.setup},
                                {"rate_mhz", std::to_string(header.rate_mhz)},
                                {"row_every", std::to_string(row_every_)}});

@@ -11,14 +11,11 @@
 #include <utility>
 
 #include "core/index.h"
+#include "core/same_bits.h"
 #include "engine/tick/inputs.h"
 
 namespace footfall::lab {
 namespace {
-
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
 
 class Comparison {
  public:
@@ -98,7 +95,7 @@ class Comparison {
       for (int k = 0; k < p.size; ++k) {
         const double x = a_.parameter_values[at(p.slot + k)];
         const double y = b_.parameter_values[at(other->slot + k)];
-        if (same_bits(x, y)) continue;
+        if (core::same_bits(x, y)) continue;
         const std::string name = p.size == 1 ? p.name : fmt::format("{}[{}]", p.name, k);
         out_.setup.push_back(fmt::format("{}: {} against {}", name, x, y));
       }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/index.h"
+#include "core/text/json_text.h"
 #include "engine/log/column_codec.h"
 #include "engine/log/encoder.h"
 #include "lab/log/mcap.h"
@@ -16,11 +17,11 @@
 namespace footfall::lab {
 namespace {
 
-constexpr int kMaxRows = 1 << 16;          // per block; far above the blocks that the writer makes
+constexpr int kMaxBlockRows = 1 << 16;     // per block; far above the blocks that the writer makes
 constexpr std::int64_t kKeptTicks = 8192;  // ticks whose inputs rows may refer to
 
 std::vector<std::string> texts_of(const std::string& json) {
-  const auto list = nlohmann::json::parse(json, nullptr, false);
+  const auto list = core::parse_json(json);
   if (!list.is_array()) throw Damaged{};
   std::vector<std::string> texts;
   for (const auto& item : list) {
@@ -95,7 +96,7 @@ void Reader::metadata(const std::string& name, const std::string& key, const std
 
 void Reader::signals(const std::string& json) {
   log_.signals.clear();
-  const auto list = nlohmann::json::parse(json, nullptr, false);
+  const auto list = core::parse_json(json);
   if (!list.is_array()) throw Damaged{};
   for (const auto& item : list) {
     if (!item.is_object()) throw Damaged{};
@@ -128,7 +129,7 @@ Reader::Block Reader::block(Bytes content, bool inputs) const {
     const ProtoField field = next_field(cursor);
     if (field.number == 1) block.first_tick = field.signed_integer();
     if (field.number == 2 && inputs) {
-      if (field.integer > kMaxRows) throw Damaged{};
+      if (field.integer > kMaxBlockRows) throw Damaged{};
       block.ticks = static_cast<int>(field.integer);
     }
     if (field.number == 2 && !inputs) {
@@ -144,7 +145,7 @@ Reader::Block Reader::block(Bytes content, bool inputs) const {
     }
   }
   if (!inputs)
-    block.ticks = static_cast<int>(std::min<std::size_t>(block.offsets.size(), kMaxRows));
+    block.ticks = static_cast<int>(std::min<std::size_t>(block.offsets.size(), kMaxBlockRows));
   return block;
 }
 
@@ -153,7 +154,7 @@ void Reader::make_codecs(int rows) {
   if (input_codec_ && input_codec_->max_rows() >= rows) return;
   // Allocate for the longest block at once: a codec keeps state from the previous block.
   const int most =
-      std::max(rows, static_cast<int>(std::min<std::int64_t>(kMaxRows, log_.rate_mhz / 1000)));
+      std::max(rows, static_cast<int>(std::min<std::int64_t>(kMaxBlockRows, log_.rate_mhz / 1000)));
   const auto columns = static_cast<int>(log_.inputs.columns.size());
   const auto all = columns + static_cast<int>(log_.signals.size());
   input_codec_ = std::make_unique<engine::ColumnCodec<std::uint64_t>>(

@@ -7,6 +7,7 @@
 
 #include "behaviors/compiled/behavior.h"
 #include "core/index.h"
+#include "core/same_bits.h"
 #include "engine/tick/control_loop.h"
 #include "engine/tick/inputs.h"
 #include "lab/replay/replay.h"
@@ -16,10 +17,6 @@ namespace {
 
 constexpr std::size_t kMostLines = 12;
 constexpr std::int64_t kFollow = 3000;  // ticks to search for a difference visible in floats
-
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
 
 std::string value_name(const LoggedParameter& parameter, int k) {
   return parameter.size == 1 ? parameter.name : fmt::format("{}[{}]", parameter.name, k);
@@ -43,7 +40,7 @@ std::vector<std::string> parameter_differences(const Log& log,
     for (int k = 0; k < logged.size; ++k) {
       const double then = log.parameter_values[at(logged.slot + k)];
       const double now = behavior.values[at(info.slot + k)];
-      if (same_bits(then, now)) continue;
+      if (core::same_bits(then, now)) continue;
       lines.push_back(fmt::format("{}: {} in the log, {} now", value_name(logged, k), then, now));
     }
   }
@@ -106,7 +103,7 @@ class Verifier {
     for (std::size_t j = 0; j < log_.inputs.joints.size(); ++j) {
       const auto then = std::bit_cast<double>(row[j]);
       const double now = replay_.loop().commands().tau[j];
-      if (same_bits(then, now)) continue;
+      if (core::same_bits(then, now)) continue;
       lines.push_back(
           fmt::format("joint.{}.command: {} in the log, {} now", log_.inputs.joints[j], then, now));
     }

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
 #include "lab/report/report.h"
 #include "lab/report/sections.h"
 
@@ -18,9 +19,8 @@ namespace {
 using nlohmann::json;
 
 static_assert(kColours.size() == kMaxCompared);
-constexpr std::size_t kPathPoints = 2000;
-constexpr std::size_t kFootsteps = 200;  // number shown, the last ones of a run
-constexpr std::size_t kSettings = 20;    // maximum number of differing settings shown
+constexpr std::size_t kComparedPoints = 2000;
+constexpr std::size_t kSettings = 20;  // maximum number of differing settings shown
 
 char letter(std::size_t run) { return static_cast<char>('A' + run); }
 
@@ -139,7 +139,7 @@ Section path(const std::vector<ComparedRun>& runs) {
     if (x == nullptr || y == nullptr) continue;
     const auto run = static_cast<int>(k);
     PlaneCurve line{std::string(1, letter(k)), kColours[k], Mark::line, {}, 0.9, run};
-    const std::size_t stride = x->size() / kPathPoints + 1;
+    const std::size_t stride = x->size() / kComparedPoints + 1;
     for (std::size_t row = 0; row < x->size(); row += stride) {
       line.points.push_back({static_cast<double>((*x)[row]), static_cast<double>((*y)[row])});
     }
@@ -176,7 +176,7 @@ Section figures(const std::vector<ComparedRun>& runs) {
   std::vector<std::string> order;
   std::string head = "<th>figure</th>";
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    add_leaves(json::parse(runs[k].summary_json, nullptr, false), "", leaves[k], order);
+    add_leaves(core::parse_json(runs[k].summary_json), "", leaves[k], order);
     head += fmt::format("<th>{}</th>", letter(k));
   }
   if (order.empty()) return section;

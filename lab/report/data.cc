@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
+
 namespace footfall::lab {
 namespace {
 
@@ -30,7 +32,7 @@ const std::vector<float>* support_of(const Log& log, const std::string& foot) {
 
 std::vector<std::string> state_paths(const Log& log) {
   std::vector<std::string> paths;
-  const auto list = nlohmann::json::parse(log.get("states", "[]"), nullptr, false);
+  const auto list = core::parse_json(log.get("states", "[]"));
   if (!list.is_array()) return paths;
   for (const auto& item : list) {
     if (item.is_string()) {

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
 #include "lab/report/sections.h"
 
 namespace footfall::lab {
 namespace {
 
 constexpr std::size_t kPathPoints = 4000;
-constexpr std::size_t kFootsteps = 200;  // number shown, the last ones
 constexpr std::size_t kPortraits = 40;
 constexpr std::size_t kPortraitPoints = 60;
 constexpr double kMinPhase = 0.06;  // minimum duration of single support that counts as a step, s
@@ -93,7 +93,7 @@ std::string step_slider(const std::vector<StepFact>& facts) {
       "<p class=\"steps\"><label for=\"step\">step</label><input type=\"range\" id=\"step\" "
       "min=\"0\" max=\"{}\" value=\"0\" data-facts=\"{}\"><output id=\"step-facts\" for=\"step\">"
       "</output><button id=\"step-go\">plots there</button></p>",
-      facts.size(), escape_html(list.dump()));
+      facts.size(), escape_html(core::json_text(list)));
 }
 
 // Phase portraits of both axes of the heading frame, one curve per support phase.

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
+
 namespace footfall::lab {
 namespace {
 
@@ -137,7 +139,7 @@ std::string plot_data(const std::vector<TimePlot>& plots, const PlotFrame& frame
     }
     data["plots"][plot.id] = std::move(item);
   }
-  std::string text = data.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  std::string text = core::json_text(data);
   // `</script>` in a name must not end the script element.
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
     text.replace(at, 1, "\\u003c");

@@ -8,6 +8,8 @@
 
 namespace footfall::lab {
 
+inline constexpr std::size_t kFootsteps = 200;  // number shown, the last ones of a run
+
 struct Section {
   std::string id;  // anchor
   std::string title;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/text/json_text.h"
 #include "lab/report/sections.h"
 
 namespace footfall::lab {
@@ -102,7 +103,8 @@ std::string faults_card(const Log& log, const json& summary) {
     for (const auto& [name, value] : summary["faults"].items()) {
       if (!value.is_number() || value.get<double>() == 0.0) continue;
       count += value.get<std::int64_t>();
-      names += (names.empty() ? "" : ", ") + name + " " + value.dump() + worst_place(summary, name);
+      names += (names.empty() ? "" : ", ") + name + " " + core::json_text(value) +
+               worst_place(summary, name);
     }
   } else if (const auto* faults = log.values("faults"); faults != nullptr && !faults->empty()) {
     count = std::lround(faults->back());
@@ -126,7 +128,7 @@ void add_rows(const json& value, const std::string& path, std::string& out) {
   } else if (!value.is_array() && !value.is_null()) {
     const std::string text = value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
                              : value.is_string()     ? value.get<std::string>()
-                                                     : value.dump();
+                                                     : core::json_text(value);
     out += fmt::format("<tr><th>{}</th><td>{}</td></tr>", escape_html(path), escape_html(text));
   }
 }
@@ -179,7 +181,7 @@ std::optional<PlanePlot> percentiles(const json& timing, std::string& rows) {
 }  // namespace
 
 std::string summary_html(const Log& log, const std::string& summary_text) {
-  const json summary = json::parse(summary_text, nullptr, false);
+  const json summary = core::parse_json(summary_text);
   std::string out = "<div class=\"cards\">" + outcome_card(log, summary);
   const auto* steps = log.values("steps");
   const double from_log =
@@ -270,7 +272,7 @@ Section event_section(const Log& log) {
 Section timing_section(const std::string& timing_text) {
   Section section{"timing", "Timing", "Wall-clock measurements; they differ between runs.",
                   "",       {},       {}};
-  const json timing = json::parse(timing_text, nullptr, false);
+  const json timing = core::parse_json(timing_text);
   if (!timing.is_object()) return section;
   std::string rows;
   add_rows(timing, "", rows);

@@ -11,9 +11,9 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <stdexcept>
 
+#include "core/text/json_text.h"
 #include "core/yaml/yaml.h"
 #include "lab/run/run_log.h"
 
@@ -24,6 +24,22 @@ namespace fs = std::filesystem;
 
 std::string absolute(const std::string& path) {
   return path.empty() ? path : fs::absolute(path).lexically_normal().string();
+}
+
+// The values of all XML attributes NAME, which begins a word: NAME="value" or NAME='value'.
+std::vector<std::string> attribute_values(std::string_view text, std::string_view name) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  std::vector<std::string> values;
+  for (std::size_t at = text.find(name); at != text.npos; at = text.find(name, at + 1)) {
+    if (at == 0 || kSpace.find(text[at - 1]) == text.npos) continue;
+    std::size_t next = text.find_first_not_of(kSpace, at + name.size());
+    if (next == text.npos || text[next] != '=') continue;
+    next = text.find_first_not_of(kSpace, next + 1);
+    if (next == text.npos || (text[next] != '"' && text[next] != '\'')) continue;
+    const std::size_t end = text.find(text[next], next + 1);
+    if (end != text.npos) values.emplace_back(text.substr(next + 1, end - next - 1));
+  }
+  return values;
 }
 
 class Collector {
@@ -50,14 +66,14 @@ class Collector {
     const std::string text = files.back().content;  // add() may move it
     const fs::path folder = fs::path(absolute(path)).parent_path();
     std::vector<fs::path> folders = {folder};
-    static const std::regex kFolders(R"re((?:mesh|texture|asset)dir\s*=\s*"([^"]*)")re");
-    static const std::regex kFiles(R"re(\bfile(?:name)?\s*=\s*"([^"]*)")re");
-    for (std::sregex_iterator it(text.begin(), text.end(), kFolders), end; it != end; ++it) {
-      folders.push_back(folder / (*it)[1].str());
+    for (const char* name : {"meshdir", "texturedir", "assetdir"}) {
+      for (const std::string& value : attribute_values(text, name)) {
+        folders.push_back(folder / value);
+      }
     }
-    for (std::sregex_iterator it(text.begin(), text.end(), kFiles), end; it != end; ++it) {
+    for (const std::string& name : attribute_values(text, "file")) {
       for (const fs::path& from : folders) {
-        const std::string file = (from / (*it)[1].str()).string();
+        const std::string file = (from / name).string();
         if (file.ends_with(".xml")) {
           add_model(file);
         } else {
@@ -116,20 +132,20 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   }
   json["script_access"] = {{"files", s.script_access.files},
                            {"processes", s.script_access.processes}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return core::json_text(json);
 }
 
 std::string setup_text(const std::string& text, const LogContinuation& continues) {
-  auto json = nlohmann::ordered_json::parse(text);
+  auto json = core::parse_ordered_json(text);
   json["continues"] = {
       {"number", continues.number}, {"back", continues.back}, {"watch", continues.watch}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return core::json_text(json);
 }
 
 RunSetup read_setup(const std::string& text) {
   RunSetup setup;
   try {
-    const auto json = nlohmann::json::parse(text);
+    const auto json = core::parse_json(text);
     setup.behavior_file = json.at("behavior_file");
     setup.robot_file = json.at("robot_file");
     json.at("set").get_to(setup.set);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/index.h"
+#include "core/text/json_text.h"
 #include "lab/run/end.h"
 #include "lab/run/log_setup.h"
 #include "lab/run/version.h"
@@ -183,9 +184,9 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
                 {"command", source.command},
                 {"model", behavior.robot.model_path},
                 {"rate_hz", fmt::format("{}", behavior.robot.rate_hz())},
-                {"states", nlohmann::json(states).dump()},
-                {"contacts", nlohmann::json(header.contacts).dump()},
-                {"joints", nlohmann::json(header.joints).dump()}};
+                {"states", core::json_text(states)},
+                {"contacts", core::json_text(header.contacts)},
+                {"joints", core::json_text(header.joints)}};
   if (source.friction > 0.0) {
     header.run.emplace_back("friction", fmt::format("{:g}", source.friction));
   }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/escape.h"
+#include "core/text/printable.h"
 #include "lab/suite/suite.h"
 
 namespace footfall::lab {
@@ -16,7 +17,7 @@ using Json = nlohmann::ordered_json;
 // In attributes a plain newline would be read as a blank.
 std::string xml(const std::string& text) {
   std::string out;
-  const std::string shown = printable(text);
+  const std::string shown = core::printable_lines(text);
   for (std::string_view rest = shown; !rest.empty();) {
     const std::size_t end = rest.find('\n');
     out += core::escape_html(rest.substr(0, end));

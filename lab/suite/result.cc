@@ -5,12 +5,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
+#include "core/text/printable.h"
+#include "lab/process/result_line.h"
 #include "lab/suite/run.h"
 
 namespace footfall::lab {
 namespace {
-
-using Parsed = nlohmann::json;
 
 constexpr std::size_t kTailLines = 12;
 
@@ -25,25 +26,7 @@ std::string last_lines(const std::string& text, std::size_t lines) {
   return text.substr(begin + (begin < text.size() && text[begin] == '\n' ? 1 : 0));
 }
 
-// The JSON object on the last non-empty line.
-Parsed last_object(const std::string& out) {
-  std::size_t end = out.find_last_not_of(" \n\r\t");
-  if (end == std::string::npos) return {};
-  const std::size_t begin = out.rfind('\n', end);
-  const std::size_t first = begin == std::string::npos ? 0 : begin + 1;
-  Parsed object = Parsed::parse(out.substr(first, end + 1 - first), nullptr, false);
-  return object.is_object() ? object : Parsed();
-}
-
-std::string text_of(const Parsed& map, const char* key) {
-  const auto found = map.find(key);
-  if (found == map.end() || found->is_null()) return "";
-  if (found->is_string()) return printable(found->get<std::string>());
-  if (found->is_number_float()) return fmt::format("{:.6g}", found->get<double>());
-  return found->dump();
-}
-
-std::optional<double> number_of(const Parsed& map, const char* key) {
+std::optional<double> number_of(const nlohmann::json& map, const char* key) {
   const auto found = map.find(key);
   if (found == map.end() || !found->is_number()) return std::nullopt;
   const double value = found->get<double>();
@@ -51,20 +34,21 @@ std::optional<double> number_of(const Parsed& map, const char* key) {
 }
 
 // nullopt if malformed.
-std::optional<Observation> read_observation(const Parsed& item) {
+std::optional<Observation> read_observation(const nlohmann::json& item) {
   if (!item.is_object() || !item.contains("passed") || !item["passed"].is_boolean()) return {};
   Observation out;
   out.passed = item["passed"].get<bool>();
-  out.value = text_of(item, "value");
+  out.value = text_at(item, "value");
   out.at = number_of(item, "at_s");
   out.tick = static_cast<std::int64_t>(number_of(item, "tick").value_or(-1.0));
-  out.state = text_of(item, "state");
-  out.why = text_of(item, "why");
+  out.state = text_at(item, "state");
+  out.why = text_at(item, "why");
   return out;
 }
 
 // Why the object is not the result of this run; empty if it is.
-std::string misfit(const Parsed& object, const SuiteScenario& scenario, const SuiteRun& run) {
+std::string misfit(const nlohmann::json& object, const SuiteScenario& scenario,
+                   const SuiteRun& run) {
   if (object.is_null()) return "its output ends without a result";
   if (!object.contains("passed") || !object["passed"].is_boolean())
     return "its result has no verdict";
@@ -78,10 +62,10 @@ std::string misfit(const Parsed& object, const SuiteScenario& scenario, const Su
   return "";
 }
 
-void read_object(const Parsed& object, int exit_code, SuiteRun& run) {
-  run.end = text_of(object, "end");
+void read_object(const nlohmann::json& object, int exit_code, SuiteRun& run) {
+  run.end = text_at(object, "end");
   bool all = true;
-  for (const Parsed& item : object["expectations"]) {
+  for (const nlohmann::json& item : object["expectations"]) {
     const auto observation = read_observation(item);
     if (!observation) {
       run.observations.clear();
@@ -98,7 +82,7 @@ void read_object(const Parsed& object, int exit_code, SuiteRun& run) {
     run.verdict = Verdict::bad_output;
     run.why = fmt::format("its result is `passed`, its exit code {}", exit_code);
   } else if (!passed && all) {
-    const std::string why = text_of(object, "why");
+    const std::string why = text_at(object, "why");
     run.why = !why.empty() ? why : "the run ended by " + (run.end.empty() ? "failing" : run.end);
   }
 }
@@ -131,7 +115,7 @@ void read_result(const ProcessResult& result, const SuiteScenario& scenario, Sui
                  Coverage& coverage) {
   run.wall_time = result.wall_time;
   run.cpu_time = result.cpu_time;
-  run.error_tail = printable(last_lines(result.err, kTailLines));
+  run.error_tail = core::printable_lines(last_lines(result.err, kTailLines));
   run.why = describe(result);
   switch (result.end) {
     case ProcessEnd::signalled:
@@ -155,7 +139,7 @@ void read_result(const ProcessResult& result, const SuiteScenario& scenario, Sui
                                           : Verdict::bad_output;
     return;
   }
-  const Parsed object = last_object(result.out);
+  const nlohmann::json object = result_line(result.out);
   run.why = misfit(object, scenario, run);
   if (!run.why.empty()) {
     run.verdict = Verdict::bad_output;

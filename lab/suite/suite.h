@@ -96,9 +96,6 @@ struct Suite {
 // Failures with expected and actual values; a few lines, each with line end. Empty for a scenario
 // that passed.
 std::string failure_text(const Suite& suite, std::size_t scenario);
-// The text as UTF-8 without control characters except tab and line feed; others become `?`, because
-// a child's output may contain anything.
-std::string printable(const std::string& text);
 // The shell command that repeats one run.
 std::string rerun_command(const Suite& suite, const SuiteRun& run);
 // The time at which a run failed, s; nullopt if unknown.

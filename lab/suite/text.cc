@@ -13,26 +13,6 @@ namespace {
 
 constexpr std::size_t kMostSeedsNamed = 20;
 
-// Length in bytes of the UTF-8 character that begins here, if HTML and XML 1.0 allow it; else 0.
-std::size_t character_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) -> unsigned {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
-  const unsigned first = byte(at);
-  if (first < 0x80) return first >= 0x20 || first == '\n' || first == '\t' ? 1 : 0;
-  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC2 ? 2 : 0;
-  if (length == 0 || first > 0xF4) return 0;
-  unsigned code = first & (0xFFU >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0U) != 0x80U) return 0;
-    code = code << 6U | (byte(at + i) & 0x3FU);
-  }
-  constexpr std::array<unsigned, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};
-  const bool bad = code < kLeast[length] || (code >= 0xD800 && code <= 0xDFFF) || code == 0xFFFE ||
-                   code == 0xFFFF || code > 0x10FFFF;
-  return bad ? 0 : length;
-}
-
 std::string indented(const std::string& text) {
   std::string out;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -108,16 +88,6 @@ std::string unmet_text(const Suite& suite, const SuiteExpectation& expected,
 }
 
 }  // namespace
-
-std::string printable(const std::string& text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = character_length(text, i);
-    out += length == 0 ? "?" : text.substr(i, length);
-    i += std::max<std::size_t>(length, 1);
-  }
-  return out;
-}
 
 std::string rerun_command(const Suite& suite, const SuiteRun& run) {
   return shell_line(

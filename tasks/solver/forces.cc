@@ -1,5 +1,4 @@
 // Contact and internal forces of the reduced WBOSC, and effective inertia; see wbosc.h.
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 
@@ -109,26 +108,6 @@ void Wbosc::add_null_torque(int nulls, int rows) noexcept {
     for (int q = 0; q < nulls; ++q) value += N_[extent(q * na + j)] * alpha_[extent(q)];
     solution_.asked[extent(actuator_order_[extent(col_u_ + j)])] += value;
   }
-}
-
-// Gram matrix of J* in the metric of φ: rows of T in the range of B, whatever their rotation.
-void Wbosc::effective_inertia(int first, int last, double* lambda) const {
-  const int m = last - first;
-  const int k = solution_.contact_rank;
-  const int r = solution_.actuation_rank;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
-  for (int a = 0; a < problem_.task_rows; ++a) {
-    const int i = level_order_[extent(col_t_ + a)] - first;
-    if (i < 0 || i >= m) continue;
-    for (int b = 0; b < problem_.task_rows; ++b) {
-      const int j = level_order_[extent(col_t_ + b)] - first;
-      if (j < 0 || j >= m) continue;
-      for (int q = 0; q < r; ++q) gram(i, j) += row(k + q)[col_t_ + a] * row(k + q)[col_t_ + b];
-    }
-  }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod(gram);
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(lambda, m, m) =
-      cod.pseudoInverse();
 }
 
 }  // namespace footfall::tasks

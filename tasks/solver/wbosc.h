@@ -93,11 +93,6 @@ class Wbosc {
   // Solves problem(). Allocates nothing; cost depends on the sizes only.
   void solve() noexcept;
 
-  // Λ* of task rows [first, last) under the solved contacts, ignoring other tasks: inverse of
-  // J* φ J*ᵀ, written row-major. Rank-deficient directions get 0. Not for the tick's hot path.
-  // Source: [Kim16] eq. (38).
-  void effective_inertia(int first, int last, double* lambda) const;
-
  private:
   void gather() noexcept;
   void reduce_contacts() noexcept;

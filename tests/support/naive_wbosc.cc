@@ -76,12 +76,6 @@ NaiveSolution naive_wbosc(const NaiveProblem& p) {
   return s;
 }
 
-Matrix naive_effective_inertia(const NaiveProblem& p, const Matrix& J) {
-  const Constrained c = constrain(p);
-  const Matrix J_star = J * c.UNs_bar;
-  return pseudo_inverse(J_star * c.phi * J_star.transpose());
-}
-
 NaiveProblem dense_problem(const model::ControlModel& model, const tasks::WboscProblem& p) {
   const int n = model.nv();
   const int na = model.joint_count();

@@ -37,9 +37,6 @@ struct NaiveSolution {
 
 NaiveSolution naive_wbosc(const NaiveProblem& problem);
 
-// Λ* = (J* φ J*ᵀ)⁺ of rows J alone.
-Matrix naive_effective_inertia(const NaiveProblem& problem, const Matrix& J);
-
 // The same problem as dense matrices. Rows are scaled by the root of their weight.
 NaiveProblem dense_problem(const model::ControlModel& model, const tasks::WboscProblem& problem);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
 #include "lab/sweep/plan/sweep.h"
 
 namespace footfall::lab {
@@ -71,7 +72,7 @@ std::string key_of(const SweepDescription& sweep, const SweepRun& run) {
                               {"robot", sweep.robot},
                               {"seed", run.seed},
                               {"set", std::move(set)}};
-  return key.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return core::json_text(key);
 }
 
 std::string digest(const std::string& text) {
@@ -102,7 +103,7 @@ std::string plan_digest(const SweepDescription& sweep) {
     plan["axes"].push_back({axis.name, std::move(texts)});
   }
   for (const SweepGroup& group : sweep.groups) plan["groups"].push_back(group.axes);
-  return digest(plan.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  return digest(core::json_text(plan));
 }
 
 }  // namespace footfall::lab

@@ -8,12 +8,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
 #include "core/units/units.h"
 
 namespace footfall::lab {
 namespace {
-
-using JsonValue = nlohmann::json;
 
 constexpr std::size_t kMostLevels = 24;  // more levels are grouped into bins
 constexpr std::size_t kBins = 8;
@@ -74,12 +73,12 @@ void sort_levels(SweepFactor& factor) {
   for (int& level : factor.level) level = place[static_cast<std::size_t>(level)];
 }
 
-SweepFactor axis_factor(const SweepTable& table, const JsonValue& axis) {
+SweepFactor axis_factor(const SweepTable& table, const nlohmann::json& axis) {
   SweepFactor factor;
   factor.name = axis.value("name", "");
   factor.unit = axis.value("unit", "");
   factor.parameter = true;
-  for (const JsonValue& value : axis.value("values", JsonValue::array())) {
+  for (const nlohmann::json& value : axis.value("values", nlohmann::json::array())) {
     if (factor.levels.size() <= kMostLevels) index_in(factor.levels, value.get<std::string>());
   }
   const bool many = factor.levels.size() > kMostLevels;
@@ -117,9 +116,9 @@ SweepFactor word_factor(const SweepTable& table, const char* name, Text text) {
 
 std::vector<SweepFactor> sweep_factors(const SweepTable& table) {
   std::vector<SweepFactor> factors;
-  const JsonValue description = JsonValue::parse(table.identity.description, nullptr, false);
+  const auto description = core::parse_json(table.identity.description);
   if (description.is_object()) {
-    for (const JsonValue& axis : description.value("axes", JsonValue::array())) {
+    for (const nlohmann::json& axis : description.value("axes", nlohmann::json::array())) {
       factors.push_back(axis_factor(table, axis));
     }
   }
@@ -130,10 +129,10 @@ std::vector<SweepFactor> sweep_factors(const SweepTable& table) {
 }
 
 std::vector<std::string> figures_of_merit(const SweepTable& table) {
-  const JsonValue description = JsonValue::parse(table.identity.description, nullptr, false);
+  const auto description = core::parse_json(table.identity.description);
   std::vector<std::string> named;
   if (description.is_object()) {
-    for (const JsonValue& name : description.value("figures", JsonValue::array()))
+    for (const nlohmann::json& name : description.value("figures", nlohmann::json::array()))
       named.push_back(name);
   }
   if (!named.empty()) return named;

@@ -10,13 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "core/text/json_text.h"
 #include "lab/report/assets.h"
 #include "lab/report/page.h"
 
 namespace footfall::lab {
 namespace {
-
-using JsonValue = nlohmann::json;
 
 constexpr std::size_t kWorst = 20, kBroken = 10;
 
@@ -176,15 +175,16 @@ Section sweep_settings_section(const SweepTable& table) {
     section.html +=
         fmt::format("<tr><th>{}</th><td>{}</td></tr>", escape_html(key), escape_html(value));
   };
-  const JsonValue description = JsonValue::parse(table.identity.description, nullptr, false);
+  const auto description = core::parse_json(table.identity.description);
   if (description.is_object()) {
     for (const auto& [key, value] : description.items()) {
-      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+      const std::string text =
+          value.is_string() ? value.get<std::string>() : core::json_text(value);
       if (text.empty() || text == "[]" || key == "groups" || key == "axes") continue;
       row(key, text.size() > 300 ? text.substr(0, 300) + "…" : text);
     }
-    for (const JsonValue& axis : description.value("axes", JsonValue::array())) {
-      const std::string text = axis.value("values", JsonValue::array()).dump();
+    for (const nlohmann::json& axis : description.value("axes", nlohmann::json::array())) {
+      const std::string text = core::json_text(axis.value("values", nlohmann::json::array()));
       row(axis.value("name", ""), text.size() > 300 ? text.substr(0, 300) + "…" : text);
     }
   }
@@ -215,7 +215,7 @@ std::string sweep_report_html(const SweepTable& table) {
     }
     page.body += "</section>\n";
   }
-  const JsonValue description = JsonValue::parse(table.identity.description, nullptr, false);
+  const auto description = core::parse_json(table.identity.description);
   const auto text = [&description](const char* key) {
     return description.is_object() ? description.value(key, std::string()) : std::string();
   };

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/text/printable.h"
+#include "lab/process/result_line.h"
 #include "lab/suite/suite.h"
 #include "lab/sweep/plan/derived_files.h"
 
@@ -17,13 +19,12 @@ namespace footfall::lab {
 namespace {
 
 namespace fs = std::filesystem;
-using JsonValue = nlohmann::json;
 
 constexpr double kSweepTimeout = 60.0, kSweepTimeoutPerSecond = 3.0;
 constexpr std::size_t kTail = 2000;  // bytes of stderr kept
 
 // Collects every number in the object by its dotted path.
-void flatten(const JsonValue& json, const std::string& name, SweepResult& result) {
+void flatten(const nlohmann::json& json, const std::string& name, SweepResult& result) {
   const auto put = [&](double value) {
     if (std::isfinite(value)) result.figures.emplace_back(name, value);
   };
@@ -36,36 +37,22 @@ void flatten(const JsonValue& json, const std::string& name, SweepResult& result
   }
 }
 
-// The JSON object at the end of the output.
-JsonValue result_object(const std::string& out) {
-  const std::size_t last = out.find_last_not_of(" \n\r\t");
-  if (last == std::string::npos) return {};
-  const std::size_t begin = out.rfind('\n', last);
-  const std::string line = out.substr(begin == std::string::npos ? 0 : begin + 1);
-  return JsonValue::parse(line, nullptr, false);
-}
-
-std::string string_at(const JsonValue& json, const char* key) {
-  const auto at = json.find(key);
-  return at != json.end() && at->is_string() ? at->get<std::string>() : std::string();
-}
-
 // Why a scenario did not pass: its reported reason, else the first failed expectation.
-std::string reason(const JsonValue& outcome) {
-  std::string why = string_at(outcome, "why");
+std::string reason(const nlohmann::json& outcome) {
+  std::string why = text_at(outcome, "why");
   const auto list = outcome.find("expectations");
   if (!why.empty() || list == outcome.end() || !list->is_array()) return why;
-  for (const JsonValue& one : *list) {
+  for (const nlohmann::json& one : *list) {
     if (!one.is_object() || one.value("passed", true)) continue;
-    return fmt::format("{}: {}", string_at(one, "text"), string_at(one, "why"));
+    return fmt::format("{}: {}", text_at(one, "text"), text_at(one, "why"));
   }
   return why;
 }
 
 bool read_output(const std::string& out, int exit_code, SweepResult& result) {
-  const JsonValue json = result_object(out);
+  const nlohmann::json json = result_line(out);
   if (!json.is_object() || !json.contains("end")) return false;
-  result.end = string_at(json, "end");
+  result.end = text_at(json, "end");
   const bool scenario = json.contains("figures");
   flatten(scenario ? json["figures"] : json, "", result);
   result.status = exit_code == 0 ? SweepStatus::passed : SweepStatus::failed;
@@ -77,7 +64,7 @@ bool read_output(const std::string& out, int exit_code, SweepResult& result) {
 }
 
 std::string tail_of(const std::string& err) {
-  return printable(err.size() > kTail ? err.substr(err.size() - kTail) : err);
+  return core::printable_lines(err.size() > kTail ? err.substr(err.size() - kTail) : err);
 }
 
 class SweepSession {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json_text.h"
 #include "lab/run/utc_time.h"
 #include "lab/sweep/results/sqlite_statement.h"
 
@@ -130,7 +131,7 @@ std::string describe_sweep(const SweepDescription& sweep) {
     json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"values", values}});
   }
   for (const SweepGroup& group : sweep.groups) json["groups"].push_back(group.axes);
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return core::json_text(json);
 }
 
 std::string store_path(const std::string& folder, int shard, int shards) {

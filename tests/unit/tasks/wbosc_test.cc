@@ -145,19 +145,6 @@ TEST_F(WboscOnHume, LowerPrioritiesChangeNothingAbove) {
   }
 }
 
-TEST_F(WboscOnHume, EffectiveInertiaIsTheInverseOfTheTasksMobility) {
-  for (const bool dual : {true, false}) {
-    next(dual);
-    solver_.solve();
-    const int rows = dual ? 4 : 6;
-    Matrix lambda(rows, rows);
-    solver_.effective_inertia(0, rows, lambda.data());
-    const NaiveProblem p = dense_problem(model_, solver_.problem());
-    const Matrix expected = naive_effective_inertia(p, p.levels[0].J);
-    EXPECT_LE((lambda - expected).max_abs(), kAlgebraBar * expected.max_abs());
-  }
-}
-
 TEST_F(WboscOnHume, AKnownExternalForceIsTakenIntoAccount) {
   next(false);
   for (double& f : solver_.problem().external) f = random_.within(20.0);
