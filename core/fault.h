@@ -11,16 +11,16 @@ namespace footfall::core {
 enum class Fault : std::uint8_t {
   fall,               // torso too low or tilted too far, or a body other than a foot touches
   non_finite,         // a state or torque is NaN or infinite
-  torque_limit,       // a commanded torque exceeds the joint's limit (clamped)
+  torque_limit,       // a commanded torque reaches the joint's limit (clamped)
   torque_step,        // a torque changes between two ticks by more than the robot's limit
   joint_limit,        // a joint exceeds its position limits
-  swing_too_long,     // a foot is in the air for more than 1 s while stepping
+  swing_too_long,     // a foot is in the air for longer than `limits.swing` while stepping
   simulator_warning,  // a MuJoCo warning, reset or bad value
   sensor_stale,       // no new sensor data
   imu_stale,          // no new IMU data
   mocap_stale,        // no new motion capture data
   tick_overrun,       // the tick missed its deadline
-  planner_late,       // a plan arrived after its deadline
+  planner_late,       // no plan arrived by its deadline
   execution,          // error.execution of the statechart
   event_overflow,     // an event queue is full
   rank_loss,          // a task level lost rank that it has at load

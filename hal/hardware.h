@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "core/capacities.h"
 #include "core/fault.h"
-#include "core/limits.h"
 #include "hal/sensor_fields.h"
 
 namespace footfall::hal {

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/limits.h"
+#include "core/capacities.h"
 
 namespace footfall::hal {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/limits.h"
+#include "core/capacities.h"
 
 namespace footfall::model {
 

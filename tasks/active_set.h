@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/limits.h"
+#include "core/capacities.h"
 #include "tasks/rows/axis.h"
 #include "tasks/task_types.h"
 

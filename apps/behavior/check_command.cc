@@ -14,7 +14,7 @@
 #include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
-#include "lab/suite/files.h"
+#include "lab/suite/discovery.h"
 #include "model/control_model.h"
 #include "sim/world/description.h"
 

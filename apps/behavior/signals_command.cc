@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/shared/commands.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/units/units.h"
 #include "core/yaml/glob.h"
 

@@ -10,6 +10,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/text/json_text.h"
 #include "core/text/printable.h"
 #include "core/units/units.h"

@@ -14,7 +14,7 @@
 #include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "hal/sensors/faults.h"
-#include "lab/judge/run.h"
+#include "lab/judge/scenario_run.h"
 #include "lab/scenario/loader.h"
 
 namespace footfall::apps {

@@ -17,7 +17,7 @@
 #include "core/yaml_text/write.h"
 #include "lab/process/pool.h"
 #include "lab/run/version.h"
-#include "lab/suite/files.h"
+#include "lab/suite/discovery.h"
 #include "lab/sweep/plan/derived_files.h"
 #include "lab/sweep/results/report.h"
 #include "lab/sweep/results/runner.h"

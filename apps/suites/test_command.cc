@@ -16,7 +16,7 @@
 #include "core/units/units.h"
 #include "lab/process/pool.h"
 #include "lab/suite/bless.h"
-#include "lab/suite/files.h"
+#include "lab/suite/discovery.h"
 #include "lab/suite/run.h"
 
 namespace footfall::apps {

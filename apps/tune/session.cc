@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
-#include "apps/tune/view/text.h"
+#include "apps/tune/view/tables.h"
 #include "core/index.h"
 #include "core/text/json_text.h"
 #include "core/text/printable.h"

@@ -9,7 +9,7 @@
 #include "apps/shared/commands.h"
 #include "apps/tune/model/options.h"
 #include "apps/tune/session.h"
-#include "apps/tune/view/text.h"
+#include "apps/tune/view/tables.h"
 #include "core/text/json_text.h"
 
 namespace footfall::apps {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 #include "core/same_bits.h"
 

@@ -5,6 +5,7 @@
 
 #include "behaviors/explain/diagram.h"
 #include "core/diagnostics/diagnostics.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {

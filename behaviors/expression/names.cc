@@ -7,6 +7,7 @@
 #include "behaviors/expression/parser.h"
 #include "behaviors/expression/statistics.h"
 #include "core/diagnostics/diagnostics.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 

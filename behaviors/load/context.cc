@@ -7,6 +7,7 @@
 
 #include "behaviors/expression/tokens.h"
 #include "behaviors/load/substitution.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {

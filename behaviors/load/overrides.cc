@@ -4,6 +4,7 @@
 
 #include "behaviors/load/context.h"
 #include "behaviors/load/steps.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/text/dotted_name.h"
 
 namespace footfall::behaviors {

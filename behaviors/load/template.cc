@@ -5,6 +5,7 @@
 
 #include "behaviors/load/context.h"
 #include "behaviors/load/steps.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {

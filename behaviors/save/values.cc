@@ -15,6 +15,7 @@
 #include "behaviors/load/steps.h"
 #include "behaviors/loader.h"
 #include "behaviors/save/parts.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/same_bits.h"
 #include "core/yaml_text/write.h"
 

@@ -7,6 +7,7 @@
 
 #include "behaviors/compiled/behavior.h"
 #include "behaviors/script/state.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "behaviors/statechart/statechart.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/value_reader.h"
 
 namespace footfall::behaviors {

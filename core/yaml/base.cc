@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/yaml.h"
 
 namespace footfall::core {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/diagnostics/did_you_mean.h"
+
 namespace footfall::core {
 namespace {
 

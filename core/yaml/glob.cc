@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/value_reader.h"
 
 namespace footfall::core {

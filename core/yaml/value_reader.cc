@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/diagnostics/did_you_mean.h"
+
 namespace footfall::core {
 
 namespace {

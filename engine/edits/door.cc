@@ -124,13 +124,11 @@ EditDoor::EditDoor(const behaviors::Behavior& behavior, std::size_t capacity, st
     entrances_.emplace_back(behavior, capacity, revision_);
   }
   taken_.reserve(capacity * entrances);
-  moving_.reserve(behavior.values.size());
 }
 
 void EditDoor::apply(std::int64_t tick, behaviors::Machine& machine) noexcept {
   taken_.clear();
-  moved_ = false;
-  advance_ramps(tick, machine.parameters());
+  moved_ = ramps_.advance(tick, machine.parameters());
   for (EditEntrance& entrance : entrances_) {
     entrance.orders_.release(entrance.taken_);
     entrance.taken_ = 0;
@@ -169,44 +167,10 @@ void EditDoor::write(const EditOrder& order, std::int64_t tick, std::span<double
   moved_ |= smooth && order.value_count > 0;
   for (std::size_t i = 0; i < order.value_count; ++i) {
     const behaviors::SlotValue& edit = order.values[i];
-    const auto slot = static_cast<std::size_t>(edit.slot);
-    const bool was_moving = ramps_[slot].ticks > 0;
-    former[i] = was_moving ? ramps_[slot].to : values[slot];
-    ramps_[slot] = {values[slot], edit.value, tick, order.ramp_ticks, smooth};
-    if (order.ramp_ticks == 0) {
-      values[slot] = edit.value;
-      if (was_moving) std::erase(moving_, edit.slot);
-    } else if (!was_moving) {
-      moving_.push_back(edit.slot);
-    }
-  }
-}
-
-// v(k) = from + (to - from) k/N, exactly `to` at k = N.
-void EditDoor::advance_ramps(std::int64_t tick, std::span<double> values) noexcept {
-  const auto arrived = [&](int s) {
-    const auto slot = static_cast<std::size_t>(s);
-    Ramp& ramp = ramps_[slot];
-    moved_ |= ramp.smooth;
-    const std::int64_t k = tick - ramp.start;
-    if (k < ramp.ticks) {
-      const double part = static_cast<double>(k) / static_cast<double>(ramp.ticks);
-      values[slot] = ramp.from + (ramp.to - ramp.from) * part;
-      return false;
-    }
-    values[slot] = ramp.to;
-    ramp.ticks = 0;
-    return true;
-  };
-  std::erase_if(moving_, arrived);
-}
-
-void EditDoor::copy_targets(std::span<const double> values,
-                            std::span<double> targets) const noexcept {
-  std::ranges::copy(values, targets.begin());
-  for (const int s : moving_) {
-    const auto slot = static_cast<std::size_t>(s);
-    targets[slot] = ramps_[slot].to;
+    double& value = values[static_cast<std::size_t>(edit.slot)];
+    former[i] = ramps_.target(edit.slot, value);
+    if (order.ramp_ticks == 0) value = edit.value;
+    ramps_.set(edit.slot, {value, edit.value, tick, order.ramp_ticks, smooth});
   }
 }
 

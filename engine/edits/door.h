@@ -16,6 +16,7 @@
 
 #include "behaviors/machine/machine.h"
 #include "core/realtime/ring.h"
+#include "engine/edits/ramps.h"
 
 namespace footfall::behaviors {
 struct TakeOverMap;
@@ -177,8 +178,7 @@ class EditDoor {
   const EditOrder& taken(std::size_t i) const noexcept { return *taken_[i]; }
   // Whether the last apply() wrote values of a live or scenario edit, by ramp or at once.
   bool moved() const noexcept { return moved_; }
-  // Target of each of `values`: the end of its ramp, or the value itself if it is at rest.
-  void copy_targets(std::span<const double> values, std::span<double> targets) const noexcept;
+  const ParameterRamps& ramps() const noexcept { return ramps_; }
 
   // Between two ticks: replaces the door of another behavior (engine/tick/take_over.cc).
   struct TakeOver {
@@ -195,18 +195,12 @@ class EditDoor {
   // stale_revision, because the revision is incremented.
   void take_over(EditDoor& old, const TakeOver& change) noexcept;
   // Stops all ramps; their values stay as they are.
-  void rest() noexcept;
+  void rest() noexcept { ramps_.clear(); }
 
  private:
-  struct Ramp {
-    double from = 0.0, to = 0.0;
-    std::int64_t start = 0, ticks = 0;  // ticks 0: at rest
-    bool smooth = false;                // torque steps are limited during the ramp
-  };
   void take_slot(const EditDoor& old, const behaviors::ParameterInfo& info, int slot, double own,
                  const TakeOver& change) noexcept;
   void refuse_waiting(EditEntrance& entrance, std::int64_t tick, std::uint64_t revision) noexcept;
-  void advance_ramps(std::int64_t tick, std::span<double> values) noexcept;
   void take(EditEntrance& entrance, std::int64_t tick, behaviors::Machine& machine) noexcept;
   void write(const EditOrder& order, std::int64_t tick, std::span<double> values,
              std::span<double> former) noexcept;
@@ -215,8 +209,7 @@ class EditDoor {
   std::deque<EditEntrance> entrances_;
   // Used by the tick:
   std::vector<const EditOrder*> taken_;
-  std::vector<Ramp> ramps_;  // by slot
-  std::vector<int> moving_;  // slots with active ramps
+  ParameterRamps ramps_;
   bool moved_ = false;
 };
 

@@ -1,18 +1,16 @@
 // The door's part of a bumpless transfer: continues the edits of the former behavior; see door.h.
-
 #include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
 #include "core/same_bits.h"
 #include "engine/edits/door.h"
 
 namespace footfall::engine {
+
 void EditDoor::take_over(EditDoor& old, const TakeOver& change) noexcept {
-  moving_.clear();
   for (const behaviors::ParameterInfo& info : change.to.parameters) {
     for (int slot = info.slot; slot < info.slot + info.size; ++slot) {
-      const Ramp& ramp = ramps_[at(slot)];
-      const double own = ramp.ticks > 0 ? ramp.to : change.own[at(slot)];
-      ramps_[at(slot)] = {};
+      const double own = ramps_.target(slot, change.own[at(slot)]);
+      ramps_.set(slot, {});
       if (change.map.slots[at(slot)] >= 0) take_slot(old, info, slot, own, change);
     }
   }
@@ -26,25 +24,23 @@ void EditDoor::take_over(EditDoor& old, const TakeOver& change) noexcept {
 // Variables, which the behavior sets itself, are kept.
 void EditDoor::take_slot(const EditDoor& old, const behaviors::ParameterInfo& info, int slot,
                          double own, const TakeOver& change) noexcept {
-  const std::size_t was = at(change.map.slots[at(slot)]);
-  const Ramp& running = old.ramps_[was];
+  const int former = change.map.slots[at(slot)];
+  const std::size_t was = at(former);
+  const Ramp& running = old.ramps_.of(former);
   const double now = change.before[was];
-  const double goal = running.ticks > 0 ? running.to : now;
+  const double goal = old.ramps_.target(former, now);
   const bool outside = info.has_range() && (goal < info.min || goal > info.max);
   const bool same_file = core::same_bits(change.from.values[was], change.to.values[at(slot)]);
   if ((info.variable || same_file) && !outside) {
     if (running.ticks == 0) return;
-    ramps_[at(slot)] = running;
+    ramps_.set(slot, running);
   } else {
     if (core::same_bits(own, now)) return;
-    ramps_[at(slot)] = {now, own, change.tick, change.periods, true};
+    // One without duration ends in this tick.
+    const bool at_once = change.periods == 0;
+    ramps_.set(slot, {now, own, at_once ? change.tick - 1 : change.tick,
+                      at_once ? 1 : change.periods, true});
   }
-  moving_.push_back(slot);
-}
-
-void EditDoor::rest() noexcept {
-  for (const int slot : moving_) ramps_[at(slot)] = {};
-  moving_.clear();
 }
 
 void EditDoor::refuse_waiting(EditEntrance& entrance, std::int64_t tick,

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/diagnostics/diagnostics.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "engine/estimators/true_state.h"
 
 namespace footfall::engine {

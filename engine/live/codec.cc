@@ -2,22 +2,19 @@
 // counts and lengths: it would allocate 2^31 entries announced by a packet of 60 bytes.
 #include "engine/live/codec.h"
 
-#include <sodium.h>
-
 #include <algorithm>
 #include <footfall_lcm/layouts.hpp>
 #include <string_view>
 
 #include "core/text/printable.h"
+#include "engine/live/authentication.h"
 
 namespace footfall::engine {
 namespace {
 
 using namespace footfall_lcm;
 
-constexpr std::size_t kMacBytes = 32;
 constexpr std::size_t kFingerprintBytes = 8;
-static_assert(kMacBytes == crypto_auth_BYTES && std::tuple_size_v<LiveKey> == crypto_auth_KEYBYTES);
 
 bool is_signed(std::string_view layout) { return layout.ends_with('m'); }
 
@@ -108,13 +105,6 @@ bool has_fingerprint(std::span<const std::uint8_t> packet, std::int64_t fingerpr
   return bits == static_cast<std::uint64_t>(fingerprint);
 }
 
-// Compares in constant time.
-bool authentic(std::span<const std::uint8_t> packet, const LiveKey& key) {
-  if (packet.size() < kFingerprintBytes + kMacBytes) return false;
-  const std::size_t size = packet.size() - kMacBytes;
-  return crypto_auth_verify(packet.data() + size, packet.data(), size, key.data()) == 0;
-}
-
 }  // namespace
 
 const char* packet_problem_name(PacketProblem problem) {
@@ -156,13 +146,6 @@ PacketBytes encode(Message message, const LiveKey* key) {
   if (!is_signed(layout) || packet.size() < kMacBytes) return packet;
   if (key != nullptr) return seal(std::move(packet), *key);
   std::fill(packet.end() - kMacBytes, packet.end(), std::uint8_t{0});
-  return packet;
-}
-
-PacketBytes seal(PacketBytes packet, const LiveKey& key) {
-  if (packet.size() < kMacBytes) return packet;
-  const std::size_t size = packet.size() - kMacBytes;
-  crypto_auth(packet.data() + size, packet.data(), size, key.data());
   return packet;
 }
 

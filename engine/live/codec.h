@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "engine/live/authentication.h"
 #include "engine/live/key.h"
 
 namespace footfall::engine {
@@ -21,8 +21,6 @@ enum class PacketProblem : std::uint8_t {
 };
 const char* packet_problem_name(PacketProblem problem);
 
-using PacketBytes = std::vector<std::uint8_t>;
-
 // Both exist for every message of engine/lcm/messages with the constant LARGEST_PACKET.
 
 // Decodes a packet. With a key, a message type with a `mac` must be signed with it; that is checked
@@ -37,9 +35,5 @@ PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
 // computed (crypto_auth over all bytes before it), otherwise it is zero.
 template <class Message>
 PacketBytes encode(Message message, const LiveKey* key);
-
-// Replaces the last 32 bytes of an encoded message by the `mac` of the others; shorter packets are
-// unchanged.
-PacketBytes seal(PacketBytes packet, const LiveKey& key);
 
 }  // namespace footfall::engine

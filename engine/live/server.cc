@@ -13,10 +13,10 @@
 
 #include "core/index.h"
 #include "core/text/printable.h"
+#include "engine/live/answered_requests.h"
 #include "engine/live/catalogue.h"
-#include "engine/live/clients.h"
-#include "engine/live/history.h"
 #include "engine/live/request.h"
+#include "engine/live/undo_history.h"
 
 namespace footfall::engine {
 namespace {

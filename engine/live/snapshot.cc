@@ -47,7 +47,7 @@ void copy(const ControlLoop& loop, LiveSnapshot& to) noexcept {
   to.revision = loop.edits().revision();
   const auto parameters = loop.machine().parameters();
   std::copy(parameters.begin(), parameters.end(), to.now.begin());
-  loop.edits().copy_targets(parameters, to.target);
+  loop.edits().ramps().copy_targets(parameters, to.target);
   std::copy_n(loop.signals().values(), to.signals.size(), to.signals.begin());
   const auto active = loop.machine().active_atomic();
   to.active_count = std::min(active.size(), to.active.size());

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/capacities.h"
 #include "core/fault.h"
-#include "core/limits.h"
 #include "core/realtime/ring.h"
 
 namespace footfall_lcm {

@@ -9,7 +9,7 @@
 #include "engine/log/column_codec.h"
 #include "engine/log/mcap_writer.h"
 #include "engine/log/writer.h"
-#include "engine/tick/inputs.h"
+#include "engine/tick/input_row.h"
 
 namespace footfall::engine {
 

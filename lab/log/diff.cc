@@ -12,7 +12,7 @@
 
 #include "core/index.h"
 #include "core/same_bits.h"
-#include "engine/tick/inputs.h"
+#include "engine/tick/input_row.h"
 
 namespace footfall::lab {
 namespace {

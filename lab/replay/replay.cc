@@ -12,8 +12,8 @@
 #include "behaviors/compiled/take_over_map.h"
 #include "behaviors/loader.h"
 #include "engine/tick/control_loop.h"
-#include "engine/tick/inputs.h"
-#include "lab/log/folder.h"
+#include "engine/tick/input_row.h"
+#include "lab/log/attached_files.h"
 #include "lab/run/log_setup.h"
 
 namespace footfall::lab {

@@ -9,7 +9,7 @@
 #include "core/index.h"
 #include "core/same_bits.h"
 #include "engine/tick/control_loop.h"
-#include "engine/tick/inputs.h"
+#include "engine/tick/input_row.h"
 #include "lab/replay/replay.h"
 
 namespace footfall::lab {

@@ -9,7 +9,7 @@
 
 #include "behaviors/loader.h"
 #include "core/diagnostics/diagnostics.h"
-#include "lab/log/folder.h"
+#include "lab/log/attached_files.h"
 #include "lab/report/data.h"
 #include "lab/run/log_setup.h"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/limits.h"
+#include "core/capacities.h"
 
 namespace footfall::lab {
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "engine/edits/door.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"

@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/value_reader.h"
 #include "model/robot/keys.h"
 

@@ -8,7 +8,8 @@
 #include <numbers>
 #include <utility>
 
-#include "core/limits.h"
+#include "core/capacities.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/glob.h"
 #include "core/yaml/value_reader.h"
 #include "model/robot/description.h"

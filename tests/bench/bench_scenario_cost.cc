@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hal/sensors/faults.h"
-#include "lab/judge/run.h"
+#include "lab/judge/scenario_run.h"
 #include "lab/run/run_log.h"
 #include "lab/scenario/loader.h"
 #include "tests/support/rig.h"

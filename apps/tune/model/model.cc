@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/diagnostics/diagnostics.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 #include "core/text/printable.h"
 #include "core/yaml/glob.h"

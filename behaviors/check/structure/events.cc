@@ -5,6 +5,7 @@
 #include <set>
 
 #include "behaviors/check/structure/structure.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {

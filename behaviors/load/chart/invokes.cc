@@ -4,6 +4,7 @@
 #include "behaviors/language/language.h"
 #include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {

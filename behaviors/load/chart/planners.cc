@@ -6,6 +6,7 @@
 #include "behaviors/language/language.h"
 #include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -178,6 +179,12 @@ void load_planner(LoadContext& context, const core::YamlEntry& entry) {
   read_limit(context, map, "goal_error_limit", core::kLength, spec.goal_error_limit);
   read_limit(context, map, "goal_speed", core::kVelocity, spec.goal_speed);
   read_limit(context, map, "velocity_filter", core::kTime, spec.velocity_filter);
+  const double period = 1e3 / static_cast<double>(context.behavior.rate_mhz);
+  if (spec.velocity_filter > 0.0 && spec.velocity_filter < period) {
+    context.error(map.find("velocity_filter")->mark, "out-of-range",
+                  fmt::format("the time constant must be 0 s (off) or at least one tick, {:.4g} ms",
+                              1e3 * period));
+  }
   read_reach(context, map, spec);
   read_extension(context, map, spec);
   read_goal(context, map, planner);

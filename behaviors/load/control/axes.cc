@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/glob.h"
 
 namespace footfall::behaviors {

@@ -10,6 +10,7 @@
 #include "behaviors/load/control/gains.h"
 #include "behaviors/load/control/steps.h"
 #include "behaviors/load/control/tasks.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {

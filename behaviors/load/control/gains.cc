@@ -7,6 +7,7 @@
 
 #include "behaviors/language/language.h"
 #include "behaviors/load/control/steps.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/glob.h"
 
 namespace footfall::behaviors {

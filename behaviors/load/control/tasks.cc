@@ -7,6 +7,7 @@
 
 #include "behaviors/language/language.h"
 #include "behaviors/load/control/gains.h"
+#include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/yaml/value_reader.h"
-#include "lab/suite/files.h"
+#include "lab/suite/discovery.h"
 #include "lab/sweep/plan/axes.h"
 #include "lab/sweep/plan/keys.h"
 

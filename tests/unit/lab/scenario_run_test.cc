@@ -1,5 +1,7 @@
 // Scenarios that run: scripts act when they say, expectations are judged as they say, on a robot of
 // double integrators whose states only time moves.
+#include "lab/judge/scenario_run.h"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,7 +12,6 @@
 
 #include "hal/backends/stub.h"
 #include "hal/sensors/faults.h"
-#include "lab/judge/run.h"
 #include "lab/scenario/loader.h"
 
 namespace footfall::lab {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/tune/model/model.h"
-#include "apps/tune/view/text.h"
+#include "apps/tune/view/tables.h"
 #include "tests/unit/apps/tune/tune_test_support.h"
 
 namespace footfall::apps {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/diagnostics/did_you_mean.h"
+
 namespace footfall::core {
 namespace {
 

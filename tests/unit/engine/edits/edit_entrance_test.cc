@@ -50,7 +50,7 @@ TEST_F(EditEntrance, FormerValuesAndTargetsAreWhereARampWasGoing) {
   tick();
   tick();
   std::vector<double> targets(behavior->values.size());
-  door->copy_targets(machine->parameters(), targets);
+  door->ramps().copy_targets(machine->parameters(), targets);
   const auto slot = static_cast<std::size_t>(
       behavior->parameters[static_cast<std::size_t>(parameter("goal"))].slot);
   EXPECT_EQ(targets[slot], 4.0);

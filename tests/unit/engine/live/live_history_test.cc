@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "engine/live/clients.h"
+#include "engine/live/answered_requests.h"
 #include "tests/unit/engine/live/live_rig.h"
 
 namespace footfall::tests {

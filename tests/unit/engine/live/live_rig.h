@@ -90,7 +90,7 @@ class LiveServer : public testing::Test {
   }
   footfall_lcm::values_t values() {
     std::vector<double> targets(bench.machine->parameters().size());
-    bench.door->copy_targets(bench.machine->parameters(), targets);
+    bench.door->ramps().copy_targets(bench.machine->parameters(), targets);
     footfall_lcm::values_t out{};
     server.fill_values({bench.now, bench.door->revision(), bench.machine->parameters(), targets},
                        out);

@@ -9,7 +9,7 @@
 #include <footfall_lcm/values_t.hpp>
 #include <limits>
 
-#include "engine/live/clients.h"
+#include "engine/live/answered_requests.h"
 #include "engine/live/server.h"
 #include "tests/unit/engine/live/live_rig.h"
 

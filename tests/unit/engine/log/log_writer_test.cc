@@ -12,7 +12,7 @@
 #include "engine/log/mcap_format.h"
 #include "engine/log/schema.h"
 #include "engine/log/writer.h"
-#include "engine/tick/inputs.h"
+#include "engine/tick/input_row.h"
 #include "lab/log/mcap.h"
 #include "lab/log/reader.h"
 #include "tests/support/allocation_guard.h"

@@ -1,6 +1,4 @@
 // Columns of the logged inputs, and the way there and back.
-#include "engine/tick/inputs.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -8,6 +6,8 @@
 #include <iterator>
 #include <string>
 #include <vector>
+
+#include "engine/tick/input_row.h"
 
 namespace footfall::engine {
 namespace {

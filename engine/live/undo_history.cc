@@ -1,5 +1,5 @@
-// Undo and redo stacks; see history.h.
-#include "engine/live/history.h"
+// Undo and redo stacks; see undo_history.h.
+#include "engine/live/undo_history.h"
 
 #include <utility>
 

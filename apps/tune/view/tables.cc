@@ -1,5 +1,5 @@
-// Output of the sub-commands of `footfall tune`; see text.h.
-#include "apps/tune/view/text.h"
+// Output of the sub-commands of `footfall tune`; see tables.h.
+#include "apps/tune/view/tables.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include "apps/tune/view/head.h"
 #include "apps/tune/view/picture.h"
 #include "core/diagnostics/diagnostics.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 #include "core/text/printable.h"
 #include "core/yaml/glob.h"

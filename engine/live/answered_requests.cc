@@ -1,5 +1,5 @@
-// Windows of sequence numbers per client; see clients.h.
-#include "engine/live/clients.h"
+// Windows of sequence numbers per client; see answered_requests.h.
+#include "engine/live/answered_requests.h"
 
 #include <algorithm>
 

@@ -3,8 +3,8 @@
 // knows.
 #pragma once
 
-#include "lab/judge/cues.h"
 #include "lab/judge/result.h"
+#include "lab/judge/script_events.h"
 #include "lab/run/run.h"
 #include "lab/scenario/golden_trace.h"
 

@@ -1,5 +1,5 @@
-// Unpacks the files embedded in a log; see folder.h.
-#include "lab/log/folder.h"
+// Unpacks the files embedded in a log; see attached_files.h.
+#include "lab/log/attached_files.h"
 
 #include <cstdlib>
 #include <fstream>

@@ -1,5 +1,5 @@
-// Finds and selects scenario files; see files.h.
-#include "lab/suite/files.h"
+// Finds and selects scenario files; see discovery.h.
+#include "lab/suite/discovery.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-// Packs and unpacks; see inputs.h.
-#include "engine/tick/inputs.h"
+// Packs and unpacks; see input_row.h.
+#include "engine/tick/input_row.h"
 
 #include <array>
 #include <bit>

@@ -1,5 +1,5 @@
-// A scenario's run put together; see run.h.
-#include "lab/judge/run.h"
+// A scenario's run put together; see scenario_run.h.
+#include "lab/judge/scenario_run.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-// When entries of a script are due, and what they do; see cues.h.
-#include "lab/judge/cues.h"
+// When entries of a script are due, and what they do; see script_events.h.
+#include "lab/judge/script_events.h"
 
 #include <fmt/format.h>
 
