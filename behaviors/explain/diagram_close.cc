@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "behaviors/explain/diagram.h"
-#include "core/diagnostics/diagnostics.h"
 #include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {

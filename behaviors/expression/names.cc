@@ -6,7 +6,6 @@
 
 #include "behaviors/expression/parser.h"
 #include "behaviors/expression/statistics.h"
-#include "core/diagnostics/diagnostics.h"
 #include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {

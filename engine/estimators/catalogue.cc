@@ -6,7 +6,6 @@
 #include <array>
 #include <stdexcept>
 
-#include "core/diagnostics/diagnostics.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "engine/estimators/true_state.h"
 

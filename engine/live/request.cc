@@ -7,7 +7,6 @@
 #include <cmath>
 #include <footfall_lcm/request_t.hpp>
 
-#include "core/diagnostics/diagnostics.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 #include "core/text/printable.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/diagnostics/diagnostics.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 #include "core/text/printable.h"

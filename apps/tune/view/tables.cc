@@ -10,7 +10,6 @@
 
 #include "apps/tune/view/head.h"
 #include "apps/tune/view/picture.h"
-#include "core/diagnostics/diagnostics.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 #include "core/text/printable.h"
