@@ -10,7 +10,7 @@
 #include "hal/hardware.h"
 #include "model/robot/description.h"
 #include "sim/world/description.h"
-#include "sim/world/disturbance.h"
+#include "sim/world/push.h"
 
 struct mjModel_;
 struct mjData_;

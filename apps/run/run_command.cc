@@ -15,7 +15,7 @@
 #include "lab/run/run.h"
 #include "lab/run/summary.h"
 #include "lab/scenario/loader.h"
-#include "sim/world/disturbance.h"
+#include "sim/world/push.h"
 
 namespace footfall::apps {
 namespace {

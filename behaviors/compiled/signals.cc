@@ -146,8 +146,8 @@ SignalLayout register_signals(const model::RobotDescription& robot,
   layout.torque_step =
       table.add("torque.step", core::kTorque, "largest torque step of a joint between two ticks");
   layout.faults = table.add("faults", core::kNone, "faults counted so far");
-  layout.tick_late = table.add("tick.late", core::kNone,
-                               "periods skipped so far because a tick was late; 0 in lock-step");
+  layout.tick_late =
+      table.add("tick.late", core::kNone, "ticks so far that began late; 0 in lock-step");
   layout.goal = add_axes(table, "goal", core::kLength, "target position", {"x", "y"});
   return layout;
 }

@@ -75,7 +75,7 @@ struct SignalLayout {
   int transition_weight = -1;  // of the second control law, 0..1
   int torque_step = -1;        // largest |tau - tau_previous| over joints, N m
   int faults = -1;             // faults counted so far
-  int tick_late = -1;          // periods skipped so far because a tick was late
+  int tick_late = -1;          // ticks so far that began late
   int goal = -1;               // goal.{x,y}: target position, m
 };
 

@@ -51,10 +51,12 @@ class ExpressionParser {
   [[noreturn]] void fail(const Token& token, std::string id, std::string text);
   void expect(std::string_view symbol);
   void emit(Op op, int index = 0, double value = 0.0);
-  // The common dimension of two operands.
+  // dimensions.cc. The common dimension of two operands.
   Operand unify(const Operand& a, const Operand& b, const Token& at, const std::string& what);
   // The dimension of a product or quotient; an error if its exponents are out of range.
   core::Dimension combine(core::Dimension a, core::Dimension b, bool times, const Token& at);
+  // A power: the exponent of a quantity with a unit is a whole number.
+  Operand raise(const Operand& base, const Operand& exponent, const Token& at);
   void require_plain(const Operand& a, const Token& at, const std::string& what);
   Operand parse_choice();
   Operand parse_or();

@@ -117,6 +117,7 @@ void SignalWriter::write_control(const behaviors::Machine& machine,
   double faults = 0.0;
   for (const std::int64_t n : counters.count) faults += static_cast<double>(n);
   signals_[layout.faults] = faults;
+  signals_[layout.tick_late] = static_cast<double>(counters.of(core::Fault::tick_overrun));
   leave_gaps();
   write_internals(control.primary, result);
   write_tasks(control.primary, result);

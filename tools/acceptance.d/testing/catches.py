@@ -49,8 +49,7 @@ def copy_tree():
 def build():
     environment = dict(os.environ, CCACHE_BASEDIR=str(TREE), CCACHE_NOHASHDIR="1")
     if not (BUILD / "build.ninja").exists():
-        done = run(["cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                    "-DFOOTFALL_BUILD_TESTS=OFF"], env=environment)
+        done = run(["cmake", "--preset", "release", "-B", BUILD, "-DFOOTFALL_BUILD_TESTS=OFF"], cwd=TREE, env=environment)
         if done.returncode:
             rows.give_up(done.stderr.strip().splitlines()[-1])
     done = run(["ninja", "-C", BUILD, "footfall"], env=environment)

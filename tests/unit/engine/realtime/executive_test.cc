@@ -188,6 +188,7 @@ TEST(Late, OnlyTicksInARowAreTheFault) {
     robot.loop.tick();
   }
   EXPECT_EQ(robot.loop.faults().of(Fault::tick_overrun), 4);
+  EXPECT_EQ(robot.loop.signals()[robot.rig.behavior->layout.tick_late], 4.0);  // `tick.late`
   const auto state = [&] {
     const auto active = robot.loop.machine().active_atomic();
     return robot.rig.behavior->states[static_cast<std::size_t>(active.front())].path;

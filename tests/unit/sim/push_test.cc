@@ -1,5 +1,5 @@
 // Pushes and vectors from the command line.
-#include "sim/world/disturbance.h"
+#include "sim/world/push.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Pushes and pairs of numbers from the command line; see disturbance.h.
-#include "sim/world/disturbance.h"
+// Pushes and pairs of numbers from the command line; see push.h.
+#include "sim/world/push.h"
 
 #include <fmt/format.h>
 
