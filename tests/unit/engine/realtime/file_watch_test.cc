@@ -42,9 +42,9 @@ class Watched : public testing::Test {
 TEST_F(Watched, AChangeIsToldOnceItHasSettled) {
   write("a", "one");
   write("b", "one");
-  std::string read;
+  std::string read;  // the first time; told_ hands it over
   engine::FileWatch watch({path("a"), path("b")}, kInterval, [&] {
-    std::ifstream(path("a")) >> read;
+    if (told_ == 0) std::ifstream(path("a")) >> read;
     ++told_;
     return std::vector<std::string>{path("a"), path("b")};
   });
