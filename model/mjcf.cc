@@ -9,7 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "core/mujoco_errors.h"
+#include "core/realtime/mujoco_errors.h"
 
 namespace footfall::model {
 namespace {

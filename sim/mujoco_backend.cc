@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "core/index.h"
-#include "core/mujoco_errors.h"
+#include "core/realtime/mujoco_errors.h"
 #include "model/mjcf.h"
 #include "sim/scene.h"
 

@@ -207,8 +207,8 @@ bool PlannerCalls::deliver(const PlanAnswer& answer) noexcept {
   return false;
 }
 
-// Computes the missing plan here, from the current position; velocity and goal as filtered up to the
-// tick before, because observe() follows the statechart.
+// Computes the missing plan here, from the current position; velocity and goal as filtered up to
+// the tick before, because observe() follows the statechart.
 void PlannerCalls::replace_late(const InvokeInfo& invoke, const Outstanding& request) noexcept {
   const PlannerInfo& planner = behavior_.planners[at(invoke.planner)];
   statechart_.count_fault(core::Fault::planner_late);

@@ -27,7 +27,8 @@ struct PlannerObservation {
 // One tick of `period` seconds; wanted: the goal, m, world. The velocity is LIPM-predictive,
 //   v̂' = (g/h)(x - p) + (v - v̂)/τ:
 // the pendulum predicts and the measured velocity corrects slowly, so that noise is averaged over τ
-// without the lag of a plain low-pass. A goal that jumps is approached from the former goal, the first one from the CoM.
+// without the lag of a plain low-pass. A goal that jumps is approached from the former goal, the
+// first one from the CoM.
 void observe(PlannerObservation& seen, const FootPlannerSpec& spec,
              const PendulumMeasurement& measured, const std::array<double, 2>& wanted,
              double period) noexcept;

@@ -1,5 +1,5 @@
 // MuJoCo's process-global handlers; see mujoco_errors.h.
-#include "core/mujoco_errors.h"
+#include "core/realtime/mujoco_errors.h"
 
 #include <mujoco/mujoco.h>
 
