@@ -6,13 +6,13 @@
 namespace footfall::tasks {
 namespace {
 
-// Each row stands at its enumerator and is complete.
+// Each row stands at its enumerator and describes itself. (That it has its functions, a test checks:
+// with UBSan g++ compares no address of a function at compile time.)
 constexpr bool is_complete() {
   for (std::size_t k = 0; k < kTaskTypes.size(); ++k) {
     const TaskTypeInfo& row = kTaskTypes[k].info;
     if (kTaskTypes[k].type != static_cast<TaskType>(k)) return false;
     if (row.name.empty() || row.doc.empty() || row.axes.empty() != row.of_joints()) return false;
-    if (row.rows == nullptr || row.measured == nullptr) return false;
   }
   return true;
 }

@@ -16,6 +16,8 @@ TEST(TaskCatalogue, NamesAreFoundAndDiffer) {
   for (const tasks::TaskTypeRow& row : tasks::kTaskTypes) {
     EXPECT_TRUE(names.insert(row.info.name).second) << row.info.name;
     EXPECT_EQ(tasks::find_task_type(row.info.name), row.type);
+    EXPECT_NE(row.info.rows, nullptr) << row.info.name;
+    EXPECT_NE(row.info.measured, nullptr) << row.info.name;
   }
   EXPECT_EQ(tasks::find_task_type("com_postion"), std::nullopt);
   EXPECT_EQ(tasks::find_task_type(""), std::nullopt);
