@@ -32,9 +32,9 @@ inline constexpr std::size_t kRowCount = (std::tuple_size_v<std::remove_cvref_t<
 
 static_assert(member_count<Sensors>() ==
                   1 + kRowCount<decltype(kSensorFields), decltype(kFlagFields)>,
-              "each member of Sensors but time_ns has one row in a table above");
+              "each member of Sensors but time_ns has one row in a table of sensor_fields.h");
 static_assert(member_count<Commands>() == kRowCount<decltype(kCommandFields)>,
-              "each member of Commands has one row in the table above");
+              "each member of Commands has one row in the table of sensor_fields.h");
 static_assert(core::kMaxJoints != core::kMaxContacts,
               "arrays by joint and by contact differ in length");
 

@@ -6,8 +6,8 @@
 namespace footfall::tasks {
 namespace {
 
-// Each row stands at its enumerator and describes itself. (That it has its functions, a test checks:
-// with UBSan g++ compares no address of a function at compile time.)
+// Each row stands at its enumerator and describes itself. (That it has its functions, a test
+// checks: with UBSan g++ compares no address of a function at compile time.)
 constexpr bool is_complete() {
   for (std::size_t k = 0; k < kTaskTypes.size(); ++k) {
     const TaskTypeInfo& row = kTaskTypes[k].info;

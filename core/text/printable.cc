@@ -32,11 +32,14 @@ std::string without_controls(std::string_view text, std::string_view kept, std::
   while (!text.empty()) {
     const std::size_t length = sequence_length(text);
     const auto lead = static_cast<unsigned char>(text[0]);
+    const std::string_view character = text.substr(0, length);
     // U+0080 to U+009F (bytes C2 80 to C2 9F) are control characters, too.
     const bool control =
         ((lead < 0x20 || lead == 0x7f) && kept.find(text[0]) == std::string_view::npos) ||
         (lead == 0xc2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xa0);
-    const std::string_view piece = length == 0 || control ? "?" : text.substr(0, length);
+    // U+FFFE and U+FFFF are no characters, and XML allows neither.
+    const bool none = length == 0 || character == "\xef\xbf\xbe" || character == "\xef\xbf\xbf";
+    const std::string_view piece = none || control ? "?" : character;
     if (out.size() + piece.size() > most) break;
     out += piece;
     text.remove_prefix(length == 0 ? 1 : length);

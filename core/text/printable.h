@@ -24,8 +24,8 @@ bool is_plain_text(std::string_view text);
 // The text with control characters as `\xHH`, so that text from a file cannot break a line.
 std::string on_one_line(std::string_view text);
 
-// Sanitizes untrusted text for terminals and logs: control characters and invalid bytes become `?`;
-// truncated to `most` bytes at a character boundary.
+// Sanitizes untrusted text for terminals, logs and XML: control characters, U+FFFE, U+FFFF and
+// invalid bytes become `?`; truncated to `most` bytes at a character boundary.
 std::string printable(std::string_view text, std::size_t most);
 
 // The same for text of several lines: keeps tabs and line feeds, and all of it.

@@ -71,19 +71,22 @@ class Collector {
         folders.push_back(folder / value);
       }
     }
-    for (const std::string& name : attribute_values(text, "file")) {
-      for (const fs::path& from : folders) {
-        const std::string file = (from / name).string();
-        if (file.ends_with(".xml")) {
-          add_model(file);
-        } else {
-          add(file, "application/octet-stream");
-        }
+    for (const char* attribute : {"file", "filename"}) {  // MJCF, URDF
+      for (const std::string& name : attribute_values(text, attribute)) {
+        for (const fs::path& from : folders) add_part((from / name).string());
       }
     }
   }
 
  private:
+  void add_part(const std::string& file) {
+    if (file.ends_with(".xml")) {
+      add_model(file);
+    } else {
+      add(file, "application/octet-stream");
+    }
+  }
+
   bool has(const std::string& path) const {
     return std::ranges::any_of(files, [&](const auto& file) { return file.path == path; });
   }

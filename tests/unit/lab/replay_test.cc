@@ -14,6 +14,7 @@
 #include "engine/log/writer.h"
 #include "lab/log/diff.h"
 #include "lab/replay/why.h"
+#include "lab/run/log_setup.h"
 #include "lab/run/run.h"
 #include "lab/run/run_log.h"
 #include "tests/support/rig.h"
@@ -64,6 +65,29 @@ class Workshop : public testing::Test {
 
   fs::path folder_;
 };
+
+// Attributes of MJCF and of URDF, in either kind of quotes; a word that only contains `file` is
+// none.
+TEST_F(Workshop, TheFilesThatAModelNamesAreKept) {
+  for (const char* name : {"a.stl", "b.stl", "c.png", "d.stl", "part.xml", "none.stl"})
+    write(name, "x");
+  fs::create_directories(path("meshes"));
+  write("meshes/e.stl", "x");
+  write("part.xml", "<mujoco><mesh file='b.stl'/></mujoco>");
+  write("model.xml",
+        "<mujoco><compiler meshdir = 'meshes'/><include file=\"part.xml\"/>\n<mesh\nfile = "
+        "\"a.stl\"/><texture name='x' file='c.png'/><mesh filename='d.stl'/><mesh file='e.stl'/>"
+        "<user profile='none.stl'/></mujoco>");
+  behaviors::Behavior behavior;
+  behavior.robot.model_path = path("model.xml");
+  std::vector<std::string> names;
+  for (const engine::LogFile& file : lab::source_files(behavior, "")) {
+    names.push_back(fs::path(file.path).filename().string());
+  }
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"a.stl", "b.stl", "c.png", "d.stl", "e.stl",
+                                             "model.xml", "part.xml"}));
+}
 
 TEST_F(Workshop, ALogReplaysBitForBitFromItselfAlone) {
   const lab::Log log = run("a.mcap");

@@ -26,5 +26,13 @@ TEST(PrintableTest, NothingMovesACursorOrBreaksACharacter) {
   EXPECT_EQ(printable("", 0), "");
 }
 
+// What XML 1.0 forbids, section 2.2, and control characters: a child's output reaches JUnit files.
+TEST(PrintableTest, LinesOfAChildBecomeTextThatXmlAllows) {
+  EXPECT_EQ(printable_lines("a\tb\nc\r\x1b\x7f"), "a\tb\nc???");
+  EXPECT_EQ(printable_lines("\xef\xbf\xbd \xef\xbf\xbe \xef\xbf\xbf"), "\xef\xbf\xbd ? ?");
+  EXPECT_EQ(printable_lines("\xc2\x85 \xff \xed\xa0\x80"), "? ? ???");
+  EXPECT_EQ(printable_lines("Größe 😀"), "Größe 😀");
+}
+
 }  // namespace
 }  // namespace footfall::core

@@ -1,4 +1,6 @@
 // Columns of the logged inputs, and the way there and back.
+#include "engine/tick/input_row.h"
+
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -6,8 +8,6 @@
 #include <iterator>
 #include <string>
 #include <vector>
-
-#include "engine/tick/input_row.h"
 
 namespace footfall::engine {
 namespace {
