@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "behaviors/machine/machine.h"
+#include "engine/links/planner_link.h"
+#include "engine/links/script_link.h"
 #include "engine/tick/faults.h"
 #include "engine/tick/input_trace.h"
-#include "engine/tick/planner_link.h"
-#include "engine/tick/script_link.h"
 #include "engine/tick/settings.h"
 
 namespace footfall::engine {

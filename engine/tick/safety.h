@@ -11,16 +11,6 @@
 
 namespace footfall::engine {
 
-// The criteria of a fall that a tick can measure. Source: docs/architecture.md, how we count.
-struct FallCriteria {
-  double height = 0.0, height_limit = 0.0;  // m, of the base above the lowest contact point
-  double tilt = 0.0, tilt_limit = 0.0;      // rad, from upright
-  bool low = false, tilted = false, touching = false;  // touching: a body that is no foot
-  bool fallen() const noexcept { return low || tilted || touching; }
-};
-FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,
-                        const model::ControlModel& model) noexcept;
-
 // What else a tick knows when its state is checked.
 struct TickStart {
   bool fresh = true;      // the last read brought something new

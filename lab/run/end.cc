@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/tick/fall.h"
+
 namespace footfall::lab {
 namespace {
 

@@ -1,5 +1,5 @@
 // The scripts' thread and its queue; see script_link.h.
-#include "engine/tick/script_link.h"
+#include "engine/links/script_link.h"
 
 #include <algorithm>
 #include <stdexcept>

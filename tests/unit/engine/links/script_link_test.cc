@@ -1,6 +1,6 @@
 // Scripts beside the tick: their answers come with the next one in lock-step, runs repeat, and a
 // script that is stuck does not stop the tick.
-#include "engine/tick/script_link.h"
+#include "engine/links/script_link.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

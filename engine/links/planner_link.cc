@@ -1,5 +1,5 @@
 // Lock-step planner traffic; see planner_link.h.
-#include "engine/tick/planner_link.h"
+#include "engine/links/planner_link.h"
 
 #include <algorithm>
 

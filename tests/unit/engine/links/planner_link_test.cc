@@ -1,5 +1,5 @@
 // Requests and answers in lock-step, and the velocity that planners see.
-#include "engine/tick/planner_link.h"
+#include "engine/links/planner_link.h"
 
 #include <gtest/gtest.h>
 
