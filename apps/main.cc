@@ -2,15 +2,19 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <sstream>
+#include <string>
 
 #include "apps/log/report_command.h"
 #include "apps/shared/commands.h"
 #include "apps/shared/live_options.h"
+#include "core/process/standard_streams.h"
 #include "lab/process/pool.h"
 #include "lab/run/version.h"
 
-int main(int argc, char** argv) {
-  footfall::lab::die_with_parent();
+namespace {
+
+int run_command(int argc, char** argv) {
   CLI::App app{
       "Footfall executes behaviors for legged robots.\n"
       "Exit codes: 0 good, 1 the robot fell or a test failed, 2 the input is wrong, "
@@ -43,7 +47,12 @@ int main(int argc, char** argv) {
     footfall::apps::join_live_url(argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      std::ostringstream text;
+      app.exit(error, text, text);
+      std::fputs(text.str().c_str(), stdout);
+      return footfall::apps::kGood;
+    }
     std::fprintf(stderr, "footfall: error: %s (see footfall --help)\n", error.what());
     return footfall::apps::kBadInput;
   } catch (const std::exception& error) {
@@ -51,4 +60,16 @@ int main(int argc, char** argv) {
     return footfall::apps::kMachineFailed;
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  footfall::core::open_standard_streams();
+  footfall::lab::die_with_parent();
+  const int exit_code = run_command(argc, argv);
+  const std::string lost = footfall::core::finish_standard_output();
+  if (lost.empty()) return exit_code;
+  std::fprintf(stderr, "footfall: error: cannot write to the standard output: %s\n", lost.c_str());
+  return footfall::apps::kMachineFailed;
 }

@@ -76,15 +76,7 @@ void add_fmt_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] {
     exit_code = kGood;
     for (const std::string& file : options->files) {
-      try {
-        exit_code = std::max(exit_code, format_file(file, *options));
-      } catch (const std::runtime_error& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        // Failure to read is an input error (exit code 2), failure to write a machine error (3).
-        const bool reading =
-            std::string_view(error.what()).find("cannot read") != std::string_view::npos;
-        exit_code = std::max(exit_code, reading ? kBadInput : kMachineFailed);
-      }
+      exit_code = std::max(exit_code, guarded([&] { return format_file(file, *options); }));
     }
   });
 }

@@ -8,6 +8,7 @@
 #include "apps/shared/commands.h"
 #include "apps/shared/external_program.h"
 #include "behaviors/explain/diagram.h"
+#include "core/process/machine_error.h"
 #include "core/text/whole_file.h"
 
 namespace footfall::apps {
@@ -56,11 +57,11 @@ int graph(const GraphOptions& options) {
     } else {
       core::write_whole_file(options.out, text);
     }
-  } catch (const std::runtime_error& error) {
+  } catch (const core::MachineError& error) {
     const bool no_picture = format == "svg";
-    fmt::print(stderr, "error: {}{}\n", error.what(),
-               no_picture ? "; --format dot and mermaid need no other program" : "");
-    return kMachineFailed;
+    throw core::MachineError(
+        fmt::format("{}{}", error.what(),
+                    no_picture ? "; --format dot and mermaid need no other program" : ""));
   }
   return kGood;
 }

@@ -135,7 +135,21 @@ void new_behavior(const NewOptions& options) {
   write_behavior(text, path);
 }
 
+// Options of another kind would be ignored in silence.
+void refuse_for_robot(const NewOptions& options) {
+  const std::pair<const char*, const std::string&> given[] = {
+      {"--from", options.from}, {"--base", options.base}, {"--robot", options.robot}};
+  for (const auto& [name, value] : given) {
+    if (value.empty()) continue;
+    throw InputError(
+        fmt::format("{}: a robot is made from the scaffold alone; the option is for "
+                    "behaviors",
+                    name));
+  }
+}
+
 void new_robot(const NewOptions& options) {
+  refuse_for_robot(options);
   const std::string name = stem(options);
   // A name without folder is created where robots are searched.
   const fs::path given(options.name);
@@ -151,7 +165,7 @@ void new_robot(const NewOptions& options) {
   body.replace(body.find(kModel), kModel.size(), fmt::format("model=\"{}\"", name));
   // Created completely in a temporary folder, then renamed.
   fs::path part = folder;
-  part += ".part";
+  part += fmt::format(".{}.part", ::getpid());
   refuse_existing(part);
   fs::create_directories(part);
   core::write_whole_file((part / "robot.yaml").string(), robot);
@@ -162,16 +176,8 @@ void new_robot(const NewOptions& options) {
 }
 
 int make(const NewOptions& options) {
-  try {
-    (options.kind == "behavior" ? new_behavior : new_robot)(options);
-    return kGood;
-  } catch (const InputError& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return kBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return kMachineFailed;
-  }
+  (options.kind == "behavior" ? new_behavior : new_robot)(options);
+  return kGood;
 }
 
 }  // namespace
@@ -199,7 +205,9 @@ void add_new_command(CLI::App& app, int& exit_code) {
   command->footer(
       "Example: footfall new behavior my_squat\nExample: footfall new behavior my_walk --base "
       "balance_best\nExample: footfall new robot my_biped");
-  command->callback([options, &exit_code] { exit_code = make(*options); });
+  command->callback([options, &exit_code] {
+    exit_code = guarded([&] { return make(*options); }, kMachineFailed);
+  });
 }
 
 }  // namespace footfall::apps

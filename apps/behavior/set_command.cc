@@ -99,14 +99,8 @@ void add_set_command(CLI::App& app, int& exit_code) {
   auto* dry = command->add_flag("--dry-run", options->dry_run, "Shows the diff, writes nothing");
   command->add_flag("--yes", options->yes, "Writes without asking")->excludes(dry);
   command->footer("Example: footfall set balance lift_time=160ms --to my_balance.yaml");
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = set_values(*options);
-    } catch (const InputError& error) {
-      std::fputs(error.what(), stderr);
-      exit_code = kBadInput;
-    }
-  });
+  command->callback(
+      [options, &exit_code] { exit_code = guarded([&] { return set_values(*options); }); });
 }
 
 }  // namespace footfall::apps

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <iostream>
+#include <sstream>
 
 #include "apps/shared/commands.h"
 #include "behaviors/statechart/trace.h"
@@ -27,7 +27,9 @@ int trace_file(const std::string& file, const std::string& events, const std::st
     fmt::print(stderr, "{}: warning: {}\n", script.empty() ? "--events" : script,
                core::on_one_line(text));
   }
-  behaviors::trace(*behavior, steps, std::cout);
+  std::ostringstream text;
+  behaviors::trace(*behavior, steps, text);
+  std::fputs(text.str().c_str(), stdout);
   return kGood;
 }
 

@@ -91,15 +91,11 @@ void add_events_command(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "One JSON object a line");
   command->footer("Example: footfall events out/run --kind log,fault --from 2s");
   command->callback([options, &exit_code] {
-    try {
+    const auto work = [&] {
       print_events(*options);
-      exit_code = kGood;
-    } catch (const std::runtime_error& error) {
-      const std::string text = error.what();
-      const bool ours = text.starts_with("--");
-      fmt::print(stderr, "{}{}\n", ours ? "" : "error: ", text);
-      exit_code = kBadInput;
-    }
+      return kGood;
+    };
+    exit_code = guarded(work);
   });
 }
 

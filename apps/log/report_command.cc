@@ -110,7 +110,7 @@ void write_comparison(const ReportArguments& arguments, std::FILE* stream) {
       arguments.out.empty()
           ? (std::filesystem::path(log_path(arguments.log)).parent_path() / "compare.html").string()
           : arguments.out;
-  lab::write_page(lab::compare_html(runs, arguments.static_plots), out);
+  core::write_whole_file(out, lab::compare_html(runs, arguments.static_plots));
   std::fprintf(stream, "  report       %s\n", out.c_str());
 }
 
@@ -159,8 +159,7 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
       }
     }
   } catch (const std::runtime_error& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
+    return tell_error(error);
   }
   return exit_code;
 }

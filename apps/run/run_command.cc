@@ -134,7 +134,7 @@ int show_result(const RunOptions& options, const lab::RunIdentity& id, const lab
   return report_code;
 }
 
-int run_behavior(const RunOptions& options) {
+int run_behavior(RunOptions options) {
   if (!options.film.empty() && (options.no_log || options.no_report)) {
     throw InputError(
         "--film: error: a film is made from the log with the report: leave out --no-log and "
@@ -150,7 +150,7 @@ int run_behavior(const RunOptions& options) {
   Backend backend = make_backend(options, *behavior, world);
   engine::ControlLoop loop(*behavior, *backend.hardware, loop_settings(options, world));
 
-  lab::RunSpec spec = make_spec(options, engine::stop_on_signals());
+  lab::RunSpec spec = make_spec(options, core::stop_on_signals());
   schedule_pushes(options, backend, spec);
   set_goal(options, *behavior, spec);
   lab::RunIdentity id = {behavior->name,  behavior->robot.name,
@@ -158,6 +158,7 @@ int run_behavior(const RunOptions& options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware)};
   const auto link = attach_link(options, loop, spec);
+  const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
   LiveFiles live = watch_files(options, loop, *backend.hardware, world, spec);
@@ -181,25 +182,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
       app.add_subcommand("run", "Runs a behavior on a backend, headless and as fast as it goes");
   add_run_options(*command, *options);
   command->callback([options, command, &exit_code] {
-    try {
-      for (const CLI::Option* option : command->get_options()) {
-        if (option->count() > 0) options->given.push_back(option->get_name());
-      }
-      finish_options(*options);
-      exit_code = lab::is_scenario_file(options->behavior) ? run_scenario_file(*options)
-                                                           : run_behavior(*options);
-    } catch (const InputError& error) {
-      if (*error.what()) std::fprintf(stderr, "%s\n", error.what());
-      exit_code = kBadInput;
-    } catch (const engine::RunInterrupted& error) {
-      std::fprintf(stderr, "footfall: error: %s\n", error.what());
-      exit_code = kMachineFailed;
-    } catch (const std::exception& error) {
-      const std::string text = error.what();
-      const bool ours = text.find("error: ") != std::string::npos;  // names a user's file
-      std::fprintf(stderr, "%s%s\n", ours ? "" : "footfall: error: ", text.c_str());
-      exit_code = ours ? kBadInput : kMachineFailed;
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 0) options->given.push_back(option->get_name());
     }
+    const auto run = [&] {
+      finish_options(*options);
+      return lab::is_scenario_file(options->behavior) ? run_scenario_file(*options)
+                                                      : run_behavior(*options);
+    };
+    exit_code = guarded(run, kMachineFailed);
   });
 }
 

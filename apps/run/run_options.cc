@@ -53,8 +53,9 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_option("--goal", o.goal, "x,y in m: target position");
   command.add_option("--goal-velocity", o.goal_velocity,
                      "vx,vy in m/s: the goal moves from the start on");
-  command.add_option("--log", o.log, "Folder for log.mcap, summary.json, timing.json")
-      ->capture_default_str();
+  command.add_option("--log", o.log,
+                     "Folder for log.mcap, summary.json, timing.json and the report (default: a "
+                     "new one in out/run; out/run/latest leads to it)");
   command.add_flag("--no-log", o.no_log, "Writes no files");
   command.add_flag("--no-report", o.no_report, "No report page beside the log");
   command.add_option("--film", o.film, "Writes the run as MP4 (needs ffmpeg)");

@@ -25,7 +25,7 @@ struct RunOptions {
   std::vector<std::string> set;
   std::vector<std::string> pushes;
   std::string goal, goal_velocity;
-  std::string log = "out/run";  // output folder
+  std::string log;  // output folder; empty: a new one in out/run
   bool no_log = false;
   bool no_report = false;
   std::string film;  // path of an MP4; empty: none

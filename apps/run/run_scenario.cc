@@ -99,12 +99,13 @@ int run_scenario_file(RunOptions options) {
   if (!problems.empty()) throw InputError(fmt::format("{}", fmt::join(problems, "\n")));
   engine::ControlLoop loop(behavior, sensors, loop_settings(options, world));
 
-  lab::RunSpec spec = make_spec(options, engine::stop_on_signals());
+  lab::RunSpec spec = make_spec(options, core::stop_on_signals());
   lab::RunIdentity id = {behavior.name,   behavior.robot.name,
                          world.name,      sensors.name(),
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(behavior, sensors)};
   const auto link = attach_link(options, loop, spec);
+  const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();
   const bool status = spec.status != nullptr;

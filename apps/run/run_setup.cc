@@ -155,17 +155,6 @@ std::string command_line(const RunOptions& options) {
   return text;
 }
 
-// Logs of an earlier run's reloads would be mistaken for this run's.
-void remove_reloads(const std::string& folder) {
-  for (int k = 1;; ++k) {
-    const fs::path path = fs::path(folder) / fmt::format("reload-{}", k);
-    std::error_code error;
-    if (!fs::exists(path, error)) return;
-    for (const char* log : {"log.mcap", "log.mcap.part"}) fs::remove(path / log, error);
-    fs::remove(path, error);  // unless it contains other files
-  }
-}
-
 }  // namespace
 
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world) {
@@ -182,18 +171,19 @@ lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription
   return source;
 }
 
+std::optional<lab::RunFolder> claim_folder(RunOptions& options, const std::string& behavior) {
+  if (options.no_log) return std::nullopt;
+  lab::RunFolder folder(options.log, behavior);
+  options.log = folder.path();
+  return folder;
+}
+
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,
                                             const sim::WorldDescription& world,
                                             lab::RunIdentity& id) {
   if (options.no_log) return nullptr;
-  std::error_code error;
-  fs::create_directories(options.log, error);
-  if (error)
-    throw std::runtime_error("cannot create the log's folder '" + options.log +
-                             "': " + error.message());
   id.log = options.log + "/log.mcap";
-  remove_reloads(options.log);
   return std::make_unique<engine::LogWriter>(
       id.log, behavior.signals, lab::make_log_header(behavior, log_source(options, world)));
 }

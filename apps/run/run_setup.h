@@ -2,16 +2,18 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "apps/run/run_options.h"
 #include "apps/shared/commands.h"
+#include "core/process/stop_signals.h"
 #include "engine/lcm/link.h"
 #include "engine/log/writer.h"
-#include "engine/realtime/stop_signals.h"
 #include "engine/tick/control_loop.h"
 #include "lab/run/run.h"
+#include "lab/run/run_folder.h"
 #include "lab/run/run_log.h"
 #include "lab/run/summary.h"
 #include "sim/mujoco_backend.h"
@@ -40,7 +42,10 @@ std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::
                                              lab::RunSpec& spec);
 // Setup data recorded in the log.
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);
-// Creates the folder and the log in it, whose path is added to `id`; null with --no-log.
+// Makes the folder of the run's files and puts its path into the options; nothing with --no-log.
+// Held until the run and its report are done. Throws like lab::RunFolder.
+std::optional<lab::RunFolder> claim_folder(RunOptions& options, const std::string& behavior);
+// Creates the log in the folder and adds its path to `id`; null with --no-log.
 std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             const behaviors::Behavior& behavior,
                                             const sim::WorldDescription& world,

@@ -8,9 +8,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <new>
 
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
+#include "core/process/machine_error.h"
 
 namespace footfall::apps {
 namespace fs = std::filesystem;
@@ -45,6 +47,32 @@ std::string find_behavior_file(const std::string& name) {
     }
   }
   return name;
+}
+
+int tell_error(const std::exception& error, int otherwise) {
+  const auto* const files = dynamic_cast<const fs::filesystem_error*>(&error);
+  const std::string text =
+      files == nullptr ? std::string(error.what())
+                       : fmt::format("{}: {}", files->path1().string(), files->code().message());
+  const char* const end = text.ends_with('\n') ? "" : "\n";
+  const bool machine = files != nullptr || dynamic_cast<const core::MachineError*>(&error) ||
+                       dynamic_cast<const std::bad_alloc*>(&error);
+  if (machine) {
+    fmt::print(stderr, "footfall: error: {}{}", text, end);
+    return kMachineFailed;
+  }
+  const bool ours = dynamic_cast<const InputError*>(&error) != nullptr;
+  const bool placed = text.find("error: ") != std::string::npos;
+  if (!text.empty()) fmt::print(stderr, "{}{}{}", placed ? "" : "error: ", text, end);
+  return ours || placed ? kBadInput : otherwise;
+}
+
+int guarded(const std::function<int()>& work, int otherwise) {
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    return tell_error(error, otherwise);
+  }
 }
 
 void print_diagnostics(const core::Diagnostics& diagnostics) {

@@ -1,6 +1,8 @@
 // Registration of all sub-commands, and functions that they share.
 #pragma once
 
+#include <exception>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -20,6 +22,13 @@ namespace footfall::apps {
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+// Prints what ended a command and returns its exit code: kMachineFailed for core::MachineError
+// and what files and memory refuse, kBadInput for InputError and for a text with a place
+// ("FILE:LINE: error: ..."), else `otherwise`.
+int tell_error(const std::exception& error, int otherwise = 2);
+// The exit code of `work`, or of the exception that it throws.
+int guarded(const std::function<int()>& work, int otherwise = 2);
 
 inline constexpr int kGood = 0;
 inline constexpr int kRobotFailed = 1;    // the robot fell, or a test failed

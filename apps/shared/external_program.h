@@ -1,4 +1,4 @@
-// Writes output files atomically and calls external programs.
+// Calls external programs.
 #pragma once
 
 #include <string>

@@ -6,13 +6,14 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
+#include "lab/run/run_folder.h"
 
 namespace footfall::apps {
 
 std::string log_path(const std::string& argument) {
-  const std::filesystem::path path(argument);
   std::error_code ignored;
-  return std::filesystem::is_directory(path, ignored) ? (path / "log.mcap").string() : argument;
+  return std::filesystem::is_directory(argument, ignored) ? lab::newest_run(argument) + "/log.mcap"
+                                                          : argument;
 }
 
 lab::Log read_whole_log(const std::string& argument) {
@@ -23,18 +24,6 @@ lab::Log read_whole_log(const std::string& argument) {
                  static_cast<long long>(ticks));
   }
   return log;
-}
-
-int guarded(const std::function<int()>& work) {
-  try {
-    return work();
-  } catch (const std::runtime_error& error) {
-    const std::string text = error.what();
-    const bool placed = text.find("error: ") != std::string::npos;  // names a file and a position
-    std::fprintf(stderr, "%s%s%s", placed ? "" : "error: ", text.c_str(),
-                 text.ends_with('\n') ? "" : "\n");
-    return kBadInput;
-  }
 }
 
 }  // namespace footfall::apps

@@ -184,7 +184,7 @@ int run(const SweepCommandOptions& options, const Loaded& loaded, const std::str
   settings.worlds = prepared.worlds;
   settings.jobs = options.jobs;
   if (options.keep_logs) settings.logs = out + "/logs";
-  settings.stop = engine::stop_on_signals();
+  settings.stop = core::stop_on_signals();
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   if (terminal) settings.progress = show_progress;
   lab::announce_to_children();
@@ -234,19 +234,15 @@ void add_sweep_command(CLI::App& app, int& exit_code) {
         options->given.push_back(option->get_name());
       }
     }
-    try {
+    const auto work = [&] {
       finish_sweep_options(*options);
-      exit_code = sweep(*options);
-    } catch (const InputError& error) {
-      if (*error.what() != '\0') std::fprintf(stderr, "%s\n", error.what());
-      exit_code = kBadInput;
-    } catch (const lab::SweepStoreError& error) {
-      std::fprintf(stderr, "sweep: error: %s\n", error.what());
-      exit_code = kBadInput;
-    } catch (const std::exception& error) {
-      std::fprintf(stderr, "footfall: error: %s\n", error.what());
-      exit_code = kMachineFailed;
-    }
+      try {
+        return sweep(*options);
+      } catch (const lab::SweepStoreError& error) {
+        throw InputError(std::string("sweep: error: ") + error.what());
+      }
+    };
+    exit_code = guarded(work, kMachineFailed);
   });
 }
 

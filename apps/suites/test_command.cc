@@ -284,7 +284,7 @@ int test(const TestOptions& options) {
                options.rerun_failed ? "nothing failed in the last session" : "an empty shard");
     return kGood;
   }
-  settings.stop = engine::stop_on_signals();
+  settings.stop = core::stop_on_signals();
   const StatusLine status;
   settings.progress = [&status](const lab::SuiteProgress& progress) { status.show(progress); };
   settings.scenario_done = [&](const Suite& all, std::size_t s) {
@@ -345,15 +345,7 @@ void add_test_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("test", "Runs scenarios as tests, side by side");
   add_options(*command, *options);
   command->callback([options, &exit_code] {
-    try {
-      exit_code = test(*options);
-    } catch (const InputError& error) {
-      std::fprintf(stderr, "%s\n", error.what());
-      exit_code = kBadInput;
-    } catch (const std::exception& error) {
-      std::fprintf(stderr, "footfall: error: %s\n", error.what());
-      exit_code = kMachineFailed;
-    }
+    exit_code = guarded([&] { return test(*options); }, kMachineFailed);
   });
 }
 

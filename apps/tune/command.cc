@@ -30,17 +30,8 @@ void add_time(CLI::App& command, const std::string& name, double& seconds,
       text);
 }
 
-// Runs an action; errors are printed on stderr.
 int run_action(const TuneOptions& options, int (*action)(const TuneOptions&)) {
-  try {
-    return action(options);
-  } catch (const InputError& error) {
-    std::fputs(error.what(), stderr);
-    return kBadInput;
-  } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return kMachineFailed;
-  }
+  return guarded([&] { return action(options); }, kMachineFailed);
 }
 
 CLI::App* add_action(CLI::App& tune, const Options& options, int& exit_code,

@@ -152,7 +152,7 @@ void wait_for_anything(const TuneSession& session, Clock::duration longest) {
 
 void run_screen(Screen& screen, TuneTerminal& terminal) {
   auto next_frame = Clock::now();
-  while (!TuneTerminal::is_told_to_stop()) {
+  while (!terminal.is_told_to_stop()) {
     exchange(screen);
     bool pressed = false;
     while (const auto key = terminal.key()) {

@@ -2,14 +2,16 @@
 #include "apps/tune/terminal.h"
 
 #include <langinfo.h>
+#include <unistd.h>
 
 #include <climits>
 #include <clocale>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <cwchar>
 #include <stdexcept>
+
+#include "core/process/stop_signals.h"
 
 // Included last, because its macros have common names.
 #define NCURSES_NOMACROS 1
@@ -19,7 +21,7 @@
 namespace footfall::apps {
 namespace {
 
-volatile std::sig_atomic_t told_to_stop = 0;
+bool ctrl_c_typed = false;  // where the terminal does not make it a signal
 
 // Colour pairs by style; 0: the terminal's default.
 struct Look {
@@ -70,14 +72,6 @@ void begin_colours() {
   }
 }
 
-void on_stop(int) { told_to_stop = 1; }
-
-void catch_signals() {
-  struct sigaction action {};
-  action.sa_handler = on_stop;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
-}
-
 std::optional<TuneKey> special_key(wint_t code) {
   switch (code) {
     case KEY_UP:
@@ -113,7 +107,7 @@ std::optional<TuneKey> typed_key(wint_t code) {
   if (code == '\n' || code == '\r') return TuneKey{TuneKey::enter, {}};
   if (code == kDelete || code == kCtrlH) return TuneKey{TuneKey::backspace, {}};
   if (code == kCtrlL) return TuneKey{TuneKey::redraw, {}};
-  if (code == kCtrlC) told_to_stop = 1;
+  if (code == kCtrlC) ctrl_c_typed = true;
   if (code < ' ') return std::nullopt;
   char bytes[MB_LEN_MAX];
   std::mbstate_t state{};
@@ -129,13 +123,14 @@ TuneTerminal::TuneTerminal() {
   std::setlocale(LC_CTYPE, "");
   if (std::strcmp(::nl_langinfo(CODESET), "UTF-8") != 0) unicode_ = false;
   ::setenv("ESCDELAY", "25", 0);
-  SCREEN* screen = newterm(nullptr, stdout, stdin);
-  if (screen == nullptr) {
+  // Not stdout: ncurses asks for the descriptor.
+  output_.reset(::fdopen(::dup(STDOUT_FILENO), "w"));
+  if (output_ == nullptr || newterm(nullptr, output_.get(), stdin) == nullptr) {
     throw std::runtime_error("the terminal '" + std::string(kind == nullptr ? "" : kind) +
                              "' (TERM) cannot be drawn on");
   }
-  told_to_stop = 0;
-  catch_signals();
+  ctrl_c_typed = false;
+  told_to_stop_ = core::stop_on_signals();
   colours_ = std::getenv("NO_COLOR") == nullptr && has_colors();
   if (colours_) begin_colours();
   cbreak();
@@ -179,6 +174,6 @@ std::optional<TuneKey> TuneTerminal::key() {
   }
 }
 
-bool TuneTerminal::is_told_to_stop() { return told_to_stop != 0; }
+bool TuneTerminal::is_told_to_stop() const { return ctrl_c_typed || *told_to_stop_; }
 
 }  // namespace footfall::apps

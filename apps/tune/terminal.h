@@ -1,6 +1,9 @@
 // Terminal output and keyboard input with ncurses. Restores the terminal however the program ends.
 #pragma once
 
+#include <atomic>
+#include <cstdio>
+#include <memory>
 #include <optional>
 
 #include "apps/tune/view/picture.h"
@@ -25,9 +28,11 @@ class TuneTerminal {
   // The next pressed key; nullopt if there is none.
   std::optional<TuneKey> key();
   // Whether SIGINT, SIGTERM or SIGHUP was received.
-  static bool is_told_to_stop();
+  bool is_told_to_stop() const;
 
  private:
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> output_{nullptr, &std::fclose};
+  const std::atomic<bool>* told_to_stop_ = nullptr;
   bool unicode_ = true, colours_ = false;
 };
 

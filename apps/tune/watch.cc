@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -10,44 +9,22 @@
 #include "apps/tune/model/options.h"
 #include "apps/tune/session.h"
 #include "apps/tune/view/tables.h"
+#include "core/process/standard_streams.h"
+#include "core/process/stop_signals.h"
 #include "core/text/json_text.h"
 
 namespace footfall::apps {
 namespace {
 
-volatile std::sig_atomic_t stop_watching = 0;
-
-// Restores the previous handlers on destruction.
-class StopSignals {
- public:
-  StopSignals() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { stop_watching = 1; };
-    ::sigaction(SIGINT, &action, &interrupt_);
-    ::sigaction(SIGTERM, &action, &terminate_);
-    ::sigaction(SIGPIPE, nullptr, &pipe_);
-    ::signal(SIGPIPE, SIG_IGN);  // end silently when piped to `head`
-  }
-  ~StopSignals() {
-    ::sigaction(SIGINT, &interrupt_, nullptr);
-    ::sigaction(SIGTERM, &terminate_, nullptr);
-    ::sigaction(SIGPIPE, &pipe_, nullptr);
-  }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-
- private:
-  struct sigaction interrupt_ {
-  }, terminate_{}, pipe_{};
-};
-
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Prints; false if the reader closed the pipe.
+// Prints; false if nobody can read it any more.
 bool print_out(const std::string& text) {
-  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+  return !core::standard_output_failed();
 }
 
 std::string json_line(const nlohmann::ordered_json& json) { return core::json_text(json) + "\n"; }
@@ -106,10 +83,9 @@ int tune_watch(const TuneOptions& options) {
   watch.json = options.json;
   watch.every = options.every;
   if (!begin_columns(session->model, options, watch)) return kBadInput;
-  const StopSignals signals;
-  stop_watching = 0;
+  const std::atomic<bool>& stop = *core::stop_on_signals();
   const double end = seconds_now() + options.duration;
-  while (stop_watching == 0 && (options.duration == 0.0 || seconds_now() < end)) {
+  while (!stop && (options.duration == 0.0 || seconds_now() < end)) {
     if (!print_samples(*session, watch)) return kGood;
     const auto& told = session->model.catalogue;
     const bool other = told.session != watch.session || told.generation != watch.generation;

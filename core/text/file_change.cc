@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/text/file_descriptor.h"
+#include "core/process/file_descriptor.h"
 #include "core/text/whole_file.h"
 
 namespace footfall::core {

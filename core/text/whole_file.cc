@@ -6,23 +6,26 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
-#include "core/text/file_descriptor.h"
-#include "core/text/write_all.h"
+#include "core/process/file_descriptor.h"
+#include "core/process/machine_error.h"
+#include "core/process/write_all.h"
 
 namespace footfall::core {
 namespace {
 
 [[noreturn]] void fail(const char* what, int error) {
-  throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(error)));
+  throw MachineError(fmt::format("{}: {}", what, std::strerror(error)));
 }
 
 // Writes the text; returns the failed operation with errno set, nullptr on success.
@@ -88,26 +91,46 @@ void write_whole_file(const std::string& path, std::string_view text) {
   try {
     StagedFile(real_path(path), text).replace();
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    throw MachineError(fmt::format("{}: {}", path, error.what()));
   }
 }
 
-std::string read_whole_file(const std::string& path) {
+std::optional<std::string> read_file(const std::string& path, std::size_t limit,
+                                     std::string& problem) {
+  static std::mutex mutex;
+  static std::map<std::string, std::string> from_pipes;  // by path
+  struct stat facts {};
+  const bool pipe = path == "-" || (::stat(path.c_str(), &facts) == 0 &&
+                                    (S_ISFIFO(facts.st_mode) || S_ISCHR(facts.st_mode)));
+  const std::lock_guard lock(mutex);
+  if (const auto known = from_pipes.find(path); pipe && known != from_pipes.end()) {
+    return known->second;
+  }
   errno = 0;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(
       path == "-" ? nullptr : std::fopen(path.c_str(), "rb"),
       [](std::FILE* f) { return f == nullptr ? 0 : std::fclose(f); });
   std::FILE* const file = path == "-" ? stdin : opened.get();
   std::string text;
-  std::array<char, 1 << 14> block{};
+  std::vector<char> block(std::size_t{1} << 16);
   std::size_t count = 0;
-  while (file != nullptr && (count = std::fread(block.data(), 1, block.size(), file)) > 0) {
+  while (file != nullptr && text.size() < limit &&
+         (count = std::fread(block.data(), 1, block.size(), file)) > 0) {
     text.append(block.data(), count);
   }
   if (file == nullptr || std::ferror(file) != 0) {
-    throw std::runtime_error(fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
+    problem = errno != 0 ? std::strerror(errno) : "unknown reason";
+    return std::nullopt;
   }
+  if (pipe) from_pipes[path] = text;
   return text;
+}
+
+std::string read_whole_file(const std::string& path) {
+  std::string problem;
+  auto text = read_file(path, std::string::npos, problem);
+  if (!text) throw std::runtime_error(fmt::format("{}: cannot read: {}", path, problem));
+  return std::move(*text);
 }
 
 }  // namespace footfall::core

@@ -1,6 +1,7 @@
 // Reads and writes complete files: a reader sees either the old or the new content, never a part.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,7 +12,7 @@ std::string real_path(const std::string& path);
 
 // The complete new content of a file, flushed to disk beside it (`TARGET.PID.part`, in the same
 // folder, so that the rename is atomic). The destructor removes it unless it was put in place.
-// Throws std::runtime_error without the path: `cannot write: No space left on device`.
+// Throws MachineError without the path: `cannot write: No space left on device`.
 class StagedFile {
  public:
   // `target`: a real path. Keeps the mode of an existing file and, where permitted, its owner.
@@ -32,11 +33,17 @@ class StagedFile {
 };
 
 // Replaces or creates the file; a symbolic link is kept, its target is replaced. Throws
-// std::runtime_error with the path and the reason; then the old file is unchanged and no temporary
+// MachineError with the path and the reason; then the old file is unchanged and no temporary
 // file remains.
 void write_whole_file(const std::string& path, std::string_view text);
 
-// The content of a file, of stdin for `-`. Throws std::runtime_error with the path and the reason.
+// The beginning of a file (of stdin for `-`), at least `limit` bytes if it has as many; nullopt and
+// the system's reason if it cannot be read. What a pipe or a terminal said is kept: it comes only
+// once, and who reads it again gets the same.
+std::optional<std::string> read_file(const std::string& path, std::size_t limit,
+                                     std::string& problem);
+// The whole content of a file, of stdin for `-`. Throws std::runtime_error with the path and the
+// reason.
 std::string read_whole_file(const std::string& path);
 
 }  // namespace footfall::core

@@ -10,9 +10,6 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -319,25 +316,6 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
   }
 }
 
-// The whole file (truncated one byte above the limit), or errno's text.
-std::optional<std::string> read_file(const std::string& path, std::string& problem) {
-  errno = 0;
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  std::string text;
-  if (file) {
-    std::vector<char> block(std::size_t{1} << 16);
-    std::size_t count = 0;
-    while (text.size() <= kMaxFileBytes &&
-           (count = std::fread(block.data(), 1, block.size(), file.get())) > 0) {
-      text.append(block.data(), count);
-    }
-    if (std::ferror(file.get()) == 0) return text;
-  }
-  problem = errno != 0 ? std::strerror(errno) : "unknown reason";
-  return std::nullopt;
-}
-
 }  // namespace
 
 const YamlNode* YamlNode::find(std::string_view key) const {
@@ -350,7 +328,7 @@ const YamlNode* YamlNode::find(std::string_view key) const {
 YamlNode load_yaml_file(const std::string& path, Diagnostics& diagnostics) {
   const int file = diagnostics.add_file(path);
   std::string problem;
-  std::optional<std::string> text = read_file(path, problem);
+  std::optional<std::string> text = read_file(path, kMaxFileBytes + 1, problem);
   if (!text) {
     diagnostics.error({file, 0, 0}, "cannot-read", "cannot read: " + problem);
     return {};

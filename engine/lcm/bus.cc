@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/process/machine_error.h"
 #include "engine/lcm/datagram.h"
 
 namespace footfall::engine {
@@ -110,7 +111,7 @@ class Socket {
  private:
   [[noreturn]] void fail() const {
     const char* const why = std::strerror(errno);
-    throw std::runtime_error(fmt::format(
+    throw core::MachineError(fmt::format(
         "no network reaches {} ({}); on one host alone, `ip link set lo up; ip route add {} dev "
         "lo` (as root) gives it one",
         address_.group, why, address_.group));
@@ -195,7 +196,7 @@ LcmBus::LcmBus(const std::string& url, std::size_t largest) {
   const std::string full =
       fmt::format("udpm://{}:{}?ttl={}", address.group, address.port, address.ttl);
   impl_->lcm = lcm_create(full.c_str());
-  if (impl_->lcm == nullptr) throw std::runtime_error("LCM cannot use '" + url + "'");
+  if (impl_->lcm == nullptr) throw core::MachineError("LCM cannot use '" + url + "'");
 }
 
 LcmBus::~LcmBus() = default;

@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/process/machine_error.h"
 #include "core/text/printable.h"
 #include "engine/lcm/bus.h"
 #include "engine/live/codec.h"
@@ -79,7 +80,7 @@ struct LiveClient::Impl {
   explicit Impl(const LiveClientSettings& how) : settings(how), bus(url_of(how), kLargest) {
     check_live_prefix(how.prefix);
     if (settings.who.empty()) settings.who = user_at_host();
-    if (sodium_init() < 0) throw std::runtime_error("this machine gives no random numbers");
+    if (sodium_init() < 0) throw core::MachineError("this machine gives no random numbers");
     randombytes_buf(&number, sizeof number);
     number = std::max<std::int64_t>(1, number & INT64_MAX);
     telemetry.tick = -1;

@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/process/machine_error.h"
 #include "engine/live/snapshot.h"
 #include "engine/tick/control_loop.h"
 
@@ -33,7 +34,7 @@ constexpr milliseconds kCatalogueApart{100}, kValuesApart{20}, kMovingApart{100}
 constexpr int kBusyWait = 1, kIdleWait = 5;  // ms
 
 std::int64_t random_number() {
-  if (sodium_init() < 0) throw std::runtime_error("this machine gives no random numbers");
+  if (sodium_init() < 0) throw core::MachineError("this machine gives no random numbers");
   std::int64_t number = 0;
   randombytes_buf(&number, sizeof number);
   return std::max<std::int64_t>(1, number & INT64_MAX);

@@ -13,7 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "core/text/file_descriptor.h"
+#include "core/process/file_descriptor.h"
+#include "core/process/machine_error.h"
 
 namespace footfall::engine {
 namespace {
@@ -28,14 +29,32 @@ constexpr std::size_t kDigits = 2 * std::tuple_size_v<LiveKey>;
 
 std::string cause() { return std::strerror(errno); }
 
+// Somebody else's file, most often root's: nothing that the command line could mend.
+[[noreturn]] void refuse_file(const std::string& path, const std::string& what) {
+  const bool denied = errno == EACCES || errno == EPERM;
+  throw core::MachineError(
+      path + ": error: " + what + ": " + cause() +
+      (denied ? "; was it made by root? Remove it, or name another file with --lcm-key" : ""));
+}
+
+// What root makes in a user's home (`sudo footfall run --lcm`) belongs to that user.
+void give_to_owner_of_folder(const fs::path& made) {
+  struct stat facts {};
+  if (::geteuid() != 0 || ::stat(made.parent_path().c_str(), &facts) != 0) return;
+  if (::lchown(made.c_str(), facts.st_uid, facts.st_gid) != 0)
+    refuse_file(made, "cannot give it away");
+}
+
 void make_folders(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   if (folder.empty()) return;
   std::error_code error;
   if (fs::exists(folder, error)) return;
   make_folders(folder.string());
-  if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
-    fail(path, "cannot make the folder '" + folder.string() + "': " + cause());
+  if (::mkdir(folder.c_str(), 0700) == 0) {
+    give_to_owner_of_folder(folder);
+  } else if (errno != EEXIST) {
+    refuse_file(path, "cannot make the folder '" + folder.string() + "'");
   }
 }
 
@@ -50,7 +69,7 @@ bool write_new_key(const std::string& path) {
   text[kDigits] = '\n';
   std::string temporary = path + ".XXXXXX";
   const core::FileDescriptor file(::mkstemp(temporary.data()));  // mode 0600
-  if (!file.open()) fail(path, "cannot write it: " + cause());
+  if (!file.open()) refuse_file(path, "cannot write it");
   const bool written =
       ::write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
       ::fsync(file.get()) == 0;
@@ -61,7 +80,8 @@ bool write_new_key(const std::string& path) {
   ::unlink(temporary.c_str());
   sodium_memzero(key.data(), key.size());
   sodium_memzero(text.data(), text.size());
-  if (!problem.empty()) fail(path, "cannot write it: " + problem);
+  if (!problem.empty()) throw core::MachineError(path + ": error: cannot write it: " + problem);
+  if (linked) give_to_owner_of_folder(path);
   return linked;
 }
 
@@ -78,7 +98,7 @@ std::string default_key_path() {
   }
   const std::string home = variable("HOME");
   if (home.empty()) {
-    throw std::runtime_error(
+    throw core::MachineError(
         "there is no place for the key of live tuning: neither XDG_RUNTIME_DIR nor HOME is set; "
         "name a file with --lcm-key");
   }
@@ -90,7 +110,7 @@ LiveKey read_key(const std::string& path) {
   if (!file.open() && errno == ENOENT) {
     fail(path, "no such file; `footfall tune key " + path + "` makes a key");
   }
-  if (!file.open()) fail(path, "cannot read it: " + cause());
+  if (!file.open()) refuse_file(path, "cannot read it");
   struct stat facts {};
   if (::fstat(file.get(), &facts) != 0) fail(path, "cannot read it: " + cause());
   if (!S_ISREG(facts.st_mode)) fail(path, "expected a file with a key");

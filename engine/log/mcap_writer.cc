@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/process/machine_error.h"
 #include "engine/log/mcap_format.h"
 
 namespace footfall::engine {
@@ -88,7 +89,7 @@ McapWriter::McapWriter(const std::string& path, std::string_view library, std::s
     : path_(path) {
   file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file_ < 0) {
-    throw std::runtime_error("cannot create the log '" + path +
+    throw core::MachineError("cannot create the log '" + path +
                              "': " + std::generic_category().message(errno));
   }
   capacity_ = std::max(kChunkBytes, 4 * (max_message + kMcapRecordHead + kMcapMessageHead));
@@ -287,7 +288,7 @@ void McapWriter::close() {
   write_summary();
   if (::close(file_) != 0 && error_ == 0) error_ = errno;
   if (error_ != 0) {
-    throw std::runtime_error("cannot write the log '" + path_ +
+    throw core::MachineError("cannot write the log '" + path_ +
                              "': " + std::generic_category().message(error_));
   }
 }

@@ -13,7 +13,7 @@ namespace footfall::engine {
 using Clock = std::chrono::steady_clock;
 
 RunInterrupted::RunInterrupted(double time, const std::string& why)
-    : std::runtime_error(
+    : core::MachineError(
           fmt::format("the robot was stopped at {:.3f} s, by an exception: {}", time, why)) {}
 
 Executive::Executive(ControlLoop& loop, const ExecutiveSettings& settings)

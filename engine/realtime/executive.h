@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/process/machine_error.h"
 #include "core/realtime/timing_histogram.h"
 #include "engine/realtime/live_port.h"
 #include "engine/tick/control_loop.h"
@@ -52,7 +53,7 @@ class LoopExchange {
 };
 
 // Thrown by run() for an exception that came after the first tick; the robot was stopped before.
-class RunInterrupted : public std::runtime_error {
+class RunInterrupted : public core::MachineError {
  public:
   RunInterrupted(double time, const std::string& why);
 };

@@ -1,21 +1,18 @@
 // Unpacks the files embedded in a log to a temporary folder.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/process/temporary_folder.h"
 #include "lab/log/reader.h"
 
 namespace footfall::lab {
 
-// A temporary folder, removed by the destructor. Throws std::runtime_error with the path.
+// They are there as long as this. Throws std::runtime_error with the path.
 class LogFolder {
  public:
   explicit LogFolder(const Log& log);
-  ~LogFolder();
-  LogFolder(const LogFolder&) = delete;
-  LogFolder& operator=(const LogFolder&) = delete;
 
   // Path of the unpacked copy of a file of the log; relative references between files stay valid.
   std::string place_of(const std::string& path) const;
@@ -25,7 +22,7 @@ class LogFolder {
  private:
   void put(const LoggedFile& file) const;
 
-  std::filesystem::path path_;
+  core::TemporaryFolder folder_;
   std::vector<std::string> search_;
 };
 

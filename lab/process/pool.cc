@@ -21,7 +21,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/text/file_descriptor.h"
+#include "core/process/file_descriptor.h"
 
 extern char** environ;  // NOLINT: POSIX gives it no header
 

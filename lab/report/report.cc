@@ -97,15 +97,7 @@ std::string report_html(const Log& log, const ReportOptions& options) {
 }
 
 void write_report(const Log& log, const std::string& path, const ReportOptions& options) {
-  write_page(report_html(log, options), path);
-}
-
-void write_page(const std::string& page, const std::string& path) {
-  std::ofstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot write the report '" + path + "'");
-  file << page;
-  file.close();
-  if (!file) throw std::runtime_error("cannot write the report '" + path + "'");
+  core::write_whole_file(path, report_html(log, options));
 }
 
 }  // namespace footfall::lab

@@ -37,8 +37,6 @@ struct ComparedRun {
 // all runs. The first run is the reference.
 std::string compare_html(const std::vector<ComparedRun>& runs, bool static_plots);
 inline constexpr std::size_t kMaxCompared = 6;
-// Throws like write_report().
-void write_page(const std::string& page, const std::string& path);
 
 // Whether the plotting library is built in; otherwise plots are SVG.
 bool has_interactive_plots();

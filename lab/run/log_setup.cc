@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "core/text/json_text.h"
+#include "core/text/whole_file.h"
 #include "core/yaml/yaml.h"
 #include "lab/run/run_log.h"
 
@@ -94,10 +93,11 @@ class Collector {
   bool add(const std::string& path, const std::string& media_type) {
     const std::string name = absolute(path);
     std::error_code error;
-    if (has(name) || !fs::is_regular_file(name, error)) return false;
-    std::ifstream in(name, std::ios::binary);
-    files.push_back({name, media_type, {std::istreambuf_iterator<char>(in), {}}});
-    return true;
+    if (has(name) || !fs::exists(name, error) || fs::is_directory(name, error)) return false;
+    std::string problem;
+    auto content = core::read_file(name, std::string::npos, problem);
+    if (content) files.push_back({name, media_type, std::move(*content)});
+    return content.has_value();
   }
 };
 

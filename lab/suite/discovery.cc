@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
+#include "core/text/whole_file.h"
 #include "core/yaml/glob.h"
 #include "core/yaml/value_reader.h"
 #include "core/yaml/yaml.h"
@@ -106,7 +107,9 @@ bool is_selected(const SuiteScenario& scenario, const SuiteSelection& selection)
 std::string first_key(const std::string& path, const std::vector<std::string>& bases) {
   // Check only whether a line begins with the word: parsing would double the load time of large
   // files.
-  std::ifstream file(path);
+  std::string problem;
+  std::istringstream file(
+      core::read_file(path, std::string::npos, problem).value_or(std::string()));
   for (std::string line; std::getline(file, line);) {
     const std::size_t colon = line.find(':');
     const std::string key = line.substr(0, colon);

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "core/process/machine_error.h"
 #include "lab/run/utc_time.h"
 
 namespace footfall::lab {
@@ -122,7 +123,7 @@ void run_suite(Suite& suite, const SuiteSettings& settings) {
   std::error_code error;
   fs::create_directories(settings.out, error);
   if (error) {
-    throw std::runtime_error("cannot create the folder '" + settings.out + "': " + error.message());
+    throw core::MachineError("cannot create the folder '" + settings.out + "': " + error.message());
   }
   suite.started = utc_now();
   const auto start = std::chrono::steady_clock::now();

@@ -9,13 +9,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/process/machine_error.h"
 namespace footfall::sim {
 namespace {
 
 [[noreturn]] void fail(const std::string& what) {
   std::array<char, 16> code{};
   std::snprintf(code.data(), code.size(), "0x%x", static_cast<unsigned>(eglGetError()));
-  throw std::runtime_error("cannot render pictures: " + what + " (EGL error " + code.data() +
+  throw core::MachineError("cannot render pictures: " + what + " (EGL error " + code.data() +
                            "; are libegl1 and libgl1-mesa-dri installed?)");
 }
 

@@ -2,7 +2,6 @@
 #include "sim/view/image.h"
 
 #include <algorithm>
-#include <fstream>
 #include <stdexcept>
 
 #pragma GCC diagnostic push
@@ -15,6 +14,9 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
+
+#include "core/process/machine_error.h"
+#include "core/text/whole_file.h"
 
 namespace footfall::sim {
 
@@ -40,7 +42,7 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
   };
   if (stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(),
                              3 * image.width) == 0) {
-    throw std::runtime_error("cannot encode a picture of " + std::to_string(image.width) + " x " +
+    throw core::MachineError("cannot encode a picture of " + std::to_string(image.width) + " x " +
                              std::to_string(image.height) + " pixels");
   }
   return bytes;
@@ -48,11 +50,7 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
 
 void write_png(const Image& image, const std::string& path) {
   const std::vector<std::uint8_t> bytes = encode_png(image);
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw std::runtime_error("cannot write the picture '" + path + "'");
+  core::write_whole_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace footfall::sim

@@ -2,13 +2,13 @@
 #include "lab/sweep/plan/check.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
 #include "behaviors/loader.h"
+#include "core/process/temporary_folder.h"
 #include "lab/scenario/loader.h"
 #include "lab/sweep/plan/derived_files.h"
 
@@ -19,28 +19,6 @@ namespace fs = std::filesystem;
 using core::Diagnostics;
 
 constexpr std::size_t kMostTries = 200;  // loads of the behavior, about 10 ms each
-
-// A temporary folder, removed by the destructor.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string path = (fs::temp_directory_path() / "footfall-sweep-XXXXXX").string();
-    if (::mkdtemp(path.data()) == nullptr) {
-      throw std::runtime_error("cannot make a folder in " + fs::temp_directory_path().string());
-    }
-    path_ = path;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 void take_errors(const Diagnostics& from, Diagnostics& to) {
   for (core::Diagnostic item : from.sorted()) {
@@ -201,7 +179,7 @@ void try_values(const SweepDescription& sweep, const SweepCheckOptions& options,
     tried.push_back(candidates(axis));
     rows = std::max(rows, tried.back().size());
   }
-  const TemporaryFolder folder;
+  const core::TemporaryFolder folder;
   SweepFiles files(sweep, folder.path(), options.worlds);
   for (std::size_t row = 0; row < rows; ++row) {
     SweepRun run;

@@ -1,10 +1,7 @@
 // Creates, fills and resumes a result database; see store.h.
 #include "lab/sweep/results/store.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <array>
 #include <filesystem>
@@ -43,12 +40,13 @@ std::string get_meta(sqlite3* db, const char* key) {
   return statement.step() ? statement.text(0) : std::string();
 }
 
-// Opened close-on-exec, so that no child inherits the lock.
-int take_lock(const std::string& path) {
-  const int fd = ::open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (fd < 0) throw SweepStoreError("cannot write '" + path + "': no right to");
-  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
-  ::close(fd);
+core::FileLock take_lock(const std::string& path) {
+  try {
+    core::FileLock lock(path + ".lock");
+    if (lock.held()) return lock;
+  } catch (const std::runtime_error& error) {
+    throw SweepStoreError(error.what());
+  }
   throw SweepStoreError("another sweep is writing to '" + path + "'");
 }
 
@@ -140,7 +138,7 @@ std::string store_path(const std::string& folder, int shard, int shards) {
 }
 
 SweepStore::SweepStore(const std::string& path, Access access)
-    : path_(path), lock_(access == Access::write ? take_lock(path) : -1) {
+    : path_(path), lock_(access == Access::write ? take_lock(path) : core::FileLock()) {
   const int flags = access == Access::write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE
                                             : SQLITE_OPEN_READWRITE;  // to recover after a kill
   try {
@@ -158,20 +156,12 @@ SweepStore::SweepStore(const std::string& path, Access access)
     }
   } catch (const SqliteError& error) {
     const std::string why = error.what();
-    close();
+    sqlite3_close(db_);
     throw SweepStoreError(fmt::format("'{}' is no file of results: {}", path, why));
   }
 }
 
-SweepStore::~SweepStore() { close(); }
-
-// The lock file is meaningless without owner; it is removed while the lock is held.
-void SweepStore::close() {
-  sqlite3_close(db_);
-  if (lock_ < 0) return;
-  ::unlink((path_ + ".lock").c_str());
-  ::close(lock_);
-}
+SweepStore::~SweepStore() { sqlite3_close(db_); }
 
 void SweepStore::execute(const std::string& sql) const {
   if (sqlite3_exec(db_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {

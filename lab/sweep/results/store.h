@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/process/file_lock.h"
 #include "lab/sweep/plan/sweep.h"
 
 struct sqlite3;
@@ -107,10 +108,9 @@ class SweepStore {
  private:
   void execute(const std::string& sql) const;
   void make_tables() const;
-  void close();
 
   std::string path_;
-  int lock_ = -1;
+  core::FileLock lock_;  // released after the database was closed
   sqlite3* db_ = nullptr;
 };
 

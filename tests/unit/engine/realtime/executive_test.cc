@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "engine/realtime/stop_signals.h"
+#include "core/process/stop_signals.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/unit/engine/realtime/executive_rig.h"
 
@@ -58,7 +58,7 @@ TEST(Executive, EndsWithTheLoopsOwnEnd) {
 TEST(Executive, ASignalOfTheProcessEndsTheRunAfterTheTickInWhichItCame) {
   Robot robot;
   ExecutiveSettings settings;
-  settings.stop = engine::stop_on_signals();
+  settings.stop = core::stop_on_signals();
   Executive executive(robot.loop, settings);
   Watcher watcher(100);
   watcher.at_tick = [](ControlLoop& loop) {
