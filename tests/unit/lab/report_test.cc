@@ -176,7 +176,8 @@ TEST_F(Report, NoRightsToWriteIsOneSentenceWithThePath) {
     write_report(log_, "/no/such/folder/report.html", options_);
     FAIL() << "no error";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "/no/such/folder/report.html: cannot write: No such file or directory");
+    EXPECT_STREQ(error.what(),
+                 "/no/such/folder/report.html: cannot write: No such file or directory");
   }
 }
 
