@@ -1,4 +1,6 @@
 // The `footfall` command; each sub-command has its own file.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -9,6 +11,7 @@
 #include "apps/shared/commands.h"
 #include "apps/shared/live_options.h"
 #include "core/process/standard_streams.h"
+#include "core/realtime/watched_thread.h"
 #include "lab/process/pool.h"
 #include "lab/run/version.h"
 
@@ -37,6 +40,7 @@ int run_command(int argc, char** argv) {
   footfall::apps::add_set_command(app, exit_code);
   footfall::apps::add_new_command(app, exit_code);
   footfall::apps::add_report_command(app, exit_code);
+  footfall::apps::add_runs_command(app, exit_code);
   footfall::apps::add_events_command(app, exit_code);
   footfall::apps::add_replay_command(app, exit_code);
   footfall::apps::add_diff_command(app, exit_code);
@@ -62,14 +66,22 @@ int run_command(int argc, char** argv) {
   return exit_code;
 }
 
+// `exit_code`, or kMachineFailed if not all of the output was written.
+int written_or(int exit_code) {
+  const std::string lost = footfall::core::finish_standard_output();
+  if (lost.empty()) return exit_code;
+  std::fprintf(stderr, "footfall: error: cannot write to the standard output: %s\n", lost.c_str());
+  return footfall::apps::kMachineFailed;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   footfall::core::open_standard_streams();
   footfall::lab::die_with_parent();
   const int exit_code = run_command(argc, argv);
-  const std::string lost = footfall::core::finish_standard_output();
-  if (lost.empty()) return exit_code;
-  std::fprintf(stderr, "footfall: error: cannot write to the standard output: %s\n", lost.c_str());
-  return footfall::apps::kMachineFailed;
+  const int last = written_or(exit_code);
+  // What such a thread uses must not be destroyed below it.
+  if (footfall::core::threads_were_let_go()) ::_exit(last);
+  return last;
 }

@@ -25,6 +25,7 @@ enum class Fault : std::uint8_t {
   event_overflow,     // an event queue is full
   rank_loss,          // a task level lost rank that it has at load
   no_estimate,        // the estimator cannot give a state
+  script_stuck,       // a script does not come back from a call
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -37,7 +38,7 @@ constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
       "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
       "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
-      "execution", "event.overflow", "rank.loss",    "no_estimate"};
+      "execution", "event.overflow", "rank.loss",    "no_estimate", "script.stuck"};
   return names[static_cast<std::size_t>(fault)];
 }
 

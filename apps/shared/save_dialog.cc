@@ -10,19 +10,16 @@
 #include "apps/shared/commands.h"
 
 namespace footfall::apps {
-namespace {
 
-bool confirmed() {
+bool confirmed(const char* question) {
   if (::isatty(STDIN_FILENO) == 0) {
-    throw InputError("error: nothing was written: this is no terminal to ask on (--yes writes)\n");
+    throw InputError("error: nothing was done: this is no terminal to ask on (--yes does it)\n");
   }
-  fmt::print("Write? [y/N] ");
+  fmt::print("{} [y/N] ", question);
   std::fflush(stdout);
   std::string answer;
   return std::getline(std::cin, answer) && (answer == "y" || answer == "yes");
 }
-
-}  // namespace
 
 int show_and_write(const behaviors::SavePlan& plan, const std::string& name, bool dry_run,
                    bool yes) {
@@ -31,7 +28,7 @@ int show_and_write(const behaviors::SavePlan& plan, const std::string& name, boo
   for (const std::string& note : plan.notes) fmt::print(stderr, "note: {}\n", note);
   if (plan.files.empty()) fmt::print("{} has these values already\n", name);
   if (plan.files.empty() || dry_run) return kGood;
-  if (!yes && !confirmed()) {
+  if (!yes && !confirmed("Write?")) {
     fmt::print("nothing was written\n");
     return kRobotFailed;
   }

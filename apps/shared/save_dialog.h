@@ -1,4 +1,4 @@
-// Shows, confirms and writes changed values.
+// Questions on the terminal; shows, confirms and writes changed values.
 #pragma once
 
 #include <string>
@@ -6,6 +6,9 @@
 #include "behaviors/save/values.h"
 
 namespace footfall::apps {
+
+// Asks on the terminal: whether the answer is yes. Throws InputError if there is none to ask on.
+bool confirmed(const char* question);
 
 // Prints the notes (stderr) and the diff of a plan that is not refused, asks on the terminal unless
 // `yes`, writes unless `dry_run`. `name`: the file name for messages. Returns the exit code; throws

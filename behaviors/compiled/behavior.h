@@ -9,6 +9,7 @@
 
 #include "behaviors/compiled/chart.h"
 #include "behaviors/compiled/control_spec.h"
+#include "behaviors/compiled/script_limits.h"
 #include "behaviors/compiled/signals.h"
 #include "behaviors/expression/parameter.h"
 #include "behaviors/planners/foot_planner.h"
@@ -80,7 +81,7 @@ struct Behavior : Chart {
   std::vector<PlannerInfo> planners;
   std::vector<InvokeInfo> invokes;
   std::vector<ScriptFile> scripts;
-  std::int64_t script_instructions = 0;  // limit for one call; 0: default
+  ScriptLimits script_limits;
 
   int step = -1;                                      // index of the mark `step`, -1 if not used
   std::vector<int> touchdown_events, liftoff_events;  // by contact

@@ -40,6 +40,10 @@ constexpr KeySpec kScriptsRows[] = {
     key("instructions", integer(1000, 1'000'000'000'000),
         "maximum number of virtual machine instructions in one call")
         .otherwise("10000000"),
+    key("deadline", quantity(core::kTime),
+        "processor time after which a call that does not come back is given up, with the fault "
+        "script.stuck")
+        .otherwise("2 s and 200 ns for each of its instructions"),
     key("doc", text_of("a text"), "their purpose, in one line"),
 };
 

@@ -16,11 +16,24 @@ constexpr std::size_t kMaxAnswers = 1000;  // limit of events, edits or messages
 
 using Body = int (*)(lua_State*, ScriptState&, std::string&);
 
-// Runs a body; a problem that it reports becomes a Lua error with the script's line.
+int api_log(lua_State* lua, ScriptState& state, std::string& problem);
+
+// Runs a body; a problem that it reports becomes a Lua error with the script's line. No body but
+// api_log runs code of the script, so that the lock is never held for long.
 template <Body body>
 int guarded(lua_State* lua) {
   std::string problem;
-  const int results = body(lua, state_of(lua), problem);
+  int results = 0;
+  {
+    ScriptState& state = state_of(lua);
+    std::unique_lock lock(state.view_in_use, std::defer_lock);
+    if (body != api_log) lock.lock();
+    if (state.stopped) {
+      problem = "stopped";
+    } else {
+      results = body(lua, state, problem);
+    }
+  }
   if (problem.empty()) return results;
   luaL_where(lua, 1);
   lua_pushlstring(lua, problem.data(), problem.size());

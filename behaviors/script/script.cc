@@ -35,7 +35,7 @@ void* allocate(void* user, void* old, std::size_t old_size, std::size_t size) {
 void count_instructions(lua_State* lua, lua_Debug*) {
   ScriptState& state = state_of(lua);
   state.instructions_left -= kHookInterval;
-  if (state.instructions_left > 0) return;
+  if (state.instructions_left > 0 && !state.stopped) return;
   state.instructions_left = 0;
   lua_sethook(lua, count_instructions, LUA_MASKCOUNT, 1);
   luaL_error(lua, "stopped: it ran longer than its instructions allow");
@@ -53,13 +53,37 @@ ScriptError split_message(const char* message) {
   return error;
 }
 
+// Makes a text with a place of any error: `error({code = 7})` has neither.
+int describe(lua_State* lua) {
+  if (lua_type(lua, 1) == LUA_TSTRING) return 1;
+  luaL_where(lua, 2);  // 1 is error() itself
+  lua_pushfstring(lua, "an error that is no text but a %s", luaL_typename(lua, 1));
+  lua_concat(lua, 2);
+  return 1;
+}
+
+// As `lua` does: no byte order mark, and no `#!` line; the lines keep their numbers.
+std::string_view without_head(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  if (!text.starts_with('#')) return text;
+  const std::size_t end = text.find('\n');
+  return end == text.npos ? std::string_view() : text.substr(end);
+}
+
 // Runs the function on top of the stack with `arguments` arguments and a new budget.
 bool run_protected(ScriptState& state, int arguments, ScriptError& error) {
-  state.instructions_left = state.settings.instructions;
+  state.instructions_left = state.settings.limits.instructions;
   lua_sethook(state.lua, count_instructions, LUA_MASKCOUNT, kHookInterval);
-  const int result = lua_pcall(state.lua, arguments, 0, 0);
+  const int handler = lua_gettop(state.lua) - arguments;
+  lua_pushcfunction(state.lua, describe);
+  lua_insert(state.lua, handler);
+  const int result = lua_pcall(state.lua, arguments, 0, handler);
   lua_sethook(state.lua, nullptr, 0, 0);
-  if (result == LUA_OK) return true;
+  if (result == LUA_OK) {
+    lua_remove(state.lua, handler);
+    return true;
+  }
   error = split_message(lua_tostring(state.lua, -1));
   if (result == LUA_ERRMEM) error.text = "stopped: it needs more memory than a script may have";
   lua_settop(state.lua, 0);
@@ -132,10 +156,21 @@ Script::Script(const ScriptSettings& settings) : impl_(std::make_unique<Impl>())
 
 Script::~Script() { lua_close(impl_->state.lua); }
 
+void Script::stop() noexcept {
+  const std::lock_guard lock(impl_->state.view_in_use);
+  impl_->state.stopped = true;
+}
+
+bool Script::stopped() const noexcept { return impl_->state.stopped; }
+
+const ScriptSettings& Script::settings() const noexcept { return impl_->state.settings; }
+
 bool Script::load(const std::string& text, ScriptError& error) {
+  if (stopped()) return false;
   lua_State* lua = impl_->state.lua;
   // "t": text only; malformed byte code could crash the interpreter.
-  if (luaL_loadbufferx(lua, text.data(), text.size(), "=script", "t") != LUA_OK) {
+  const std::string_view code = without_head(text);
+  if (luaL_loadbufferx(lua, code.data(), code.size(), "=script", "t") != LUA_OK) {
     error = split_message(lua_tostring(lua, -1));
     lua_settop(lua, 0);
     return false;
@@ -155,6 +190,7 @@ std::vector<std::string> Script::functions() const {
 const std::vector<std::string>& Script::patterns() const { return impl_->state.patterns; }
 
 bool Script::call(const std::string& function, const ScriptView& view, ScriptAnswer& out) {
+  if (stopped()) return false;
   ScriptState& state = impl_->state;
   ScriptAnswer answer;
   state.view = &view;
@@ -166,6 +202,7 @@ bool Script::call(const std::string& function, const ScriptView& view, ScriptAns
 }
 
 bool Script::handle(std::string_view event, const ScriptView& view, ScriptAnswer& out) {
+  if (stopped()) return false;
   ScriptState& state = impl_->state;
   bool all = true;
   for (std::size_t k = 0; k < state.handlers.size(); ++k) {

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "behaviors/compiled/script_limits.h"
 #include "behaviors/expression/parameter.h"
 
 namespace footfall::behaviors {
@@ -33,8 +34,8 @@ struct ScriptAccess {
 
 struct ScriptSettings {
   ScriptAccess access;
-  std::uint64_t seed = 0;                    // seed of math.random
-  std::int64_t instructions = 10'000'000;    // limit of virtual machine instructions in one call
+  std::uint64_t seed = 0;  // seed of math.random
+  ScriptLimits limits{};
   std::size_t memory = 64U * 1024U * 1024U;  // bytes, limit of all memory of the script
 };
 
@@ -79,6 +80,12 @@ class Script {
   bool call(const std::string& function, const ScriptView& view, ScriptAnswer& answer);
   // Calls the handlers whose pattern matches the event, in the order of footfall.on.
   bool handle(std::string_view event, const ScriptView& view, ScriptAnswer& answer);
+
+  // From any thread: what runs ends with its next instruction, nothing begins any more, and the
+  // view of a call is not looked at after this.
+  void stop() noexcept;
+  bool stopped() const noexcept;
+  const ScriptSettings& settings() const noexcept;
 
  private:
   struct Impl;

@@ -1,7 +1,9 @@
 // Internals shared by the files of this folder; see script.h.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,8 @@ struct ScriptState {
   std::vector<std::string> patterns;  // of footfall.on; the registry holds the handlers
   std::vector<int> handlers;          // registry references
   const ScriptView* view = nullptr;   // during a call
+  std::mutex view_in_use;             // held by what looks at the view
+  std::atomic<bool> stopped{false};
   ScriptAnswer* answer = nullptr;
 };
 

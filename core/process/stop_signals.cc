@@ -45,4 +45,6 @@ const std::atomic<bool>* stop_on_signals() noexcept {
   return &g_stop;
 }
 
+bool stop_flag() noexcept { return g_stop.load(); }
+
 }  // namespace footfall::core

@@ -12,4 +12,7 @@ namespace footfall::core {
 // Never nullptr.
 const std::atomic<bool>* stop_on_signals() noexcept;
 
+// Whether one came; never true before stop_on_signals().
+bool stop_flag() noexcept;
+
 }  // namespace footfall::core

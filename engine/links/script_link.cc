@@ -10,34 +10,44 @@ namespace footfall::engine {
 using behaviors::ScriptAnswer;
 using behaviors::ScriptView;
 
-ScriptLink::ScriptLink(const behaviors::Behavior& behavior,
-                       const behaviors::ScriptSettings& settings)
-    : behavior_(behavior), script_(settings), batches_(kBatches) {
-  for (const behaviors::ScriptFile& file : behavior.scripts) {
+ScriptLink::Side::Side(const behaviors::Behavior& of, const behaviors::ScriptSettings& settings)
+    : behavior(&of),
+      events(of.events),
+      script(std::make_shared<behaviors::Script>(settings)),
+      batches(kBatches) {
+  for (const auto& call : of.calls) calls.push_back(call.name);
+  for (const behaviors::ScriptFile& file : of.scripts) {
     behaviors::ScriptError error;
-    if (script_.load(file.text, error)) continue;
+    if (behaviors::load_watched(script, file.text, error)) continue;
     throw std::runtime_error(file.path + ":" + std::to_string(error.line) +
                              ": error: " + error.text);
   }
-  for (Batch& batch : batches_) {
-    batch.signals.resize(static_cast<std::size_t>(behavior.signals.size()));
-    batch.parameters.resize(behavior.values.size());
-    batch.active.resize(behavior.states.size());
+  for (Batch& batch : batches) {
+    batch.signals.resize(static_cast<std::size_t>(of.signals.size()));
+    batch.parameters.resize(of.values.size());
+    batch.active.resize(of.states.size());
   }
-  thread_ = std::thread([this] { work(); });
 }
 
+ScriptLink::ScriptLink(const behaviors::Behavior& behavior,
+                       const behaviors::ScriptSettings& settings)
+    : side_(std::make_shared<Side>(behavior, settings)),
+      thread_([side = side_] { side->work(); }) {}
+
 ScriptLink::~ScriptLink() {
-  stop_.store(true);
-  posted_.fetch_add(1);  // wakes the thread; it sees stop_ first
-  posted_.notify_all();
-  thread_.join();
+  side_->stop.store(true);
+  side_->posted.fetch_add(1);  // wakes the thread; it sees `stop` first
+  side_->posted.notify_all();
+  if (given_up_) return;
+  // The thread ends with the call that is under way.
+  if (!wait_for([this] { return side_->ended.load(); })) give_up();
 }
 
 void ScriptLink::deliver(behaviors::Machine& machine) noexcept {
-  const std::uint32_t answered = answered_.load(std::memory_order_acquire);
+  const std::uint32_t answered = side_->answered.load(std::memory_order_acquire);
+  if (answered != delivered_) unanswered_ = 0;
   for (; delivered_ != answered; ++delivered_) {
-    const Batch& done = batch(delivered_);
+    const Batch& done = side_->batch(delivered_);
     for (std::size_t k = 0; k < done.edit_count; ++k) {
       machine.parameters()[static_cast<std::size_t>(done.edits[k].slot)] = done.edits[k].value;
     }
@@ -48,10 +58,11 @@ void ScriptLink::deliver(behaviors::Machine& machine) noexcept {
 bool ScriptLink::post(const behaviors::Machine& machine, const double* signals,
                       double time) noexcept {
   const auto requests = machine.script_requests();
+  const std::uint32_t number = side_->posted.load(std::memory_order_relaxed);
+  if (number != delivered_) ++unanswered_;
   if (requests.empty()) return true;
-  const std::uint32_t number = posted_.load(std::memory_order_relaxed);
-  if (number - delivered_ >= kBatches) return false;
-  Batch& next = batch(number);
+  if (given_up_ || number - delivered_ >= kBatches) return false;
+  Batch& next = side_->batch(number);
   next.time = time;
   next.request_count = std::min(requests.size(), kRequests);
   std::copy_n(requests.begin(), next.request_count, next.requests.begin());
@@ -59,50 +70,73 @@ bool ScriptLink::post(const behaviors::Machine& machine, const double* signals,
   std::copy_n(machine.parameters().begin(), next.parameters.size(), next.parameters.begin());
   std::fill(next.active.begin(), next.active.end(), std::uint8_t{0});
   for (const int s : machine.active_states()) next.active[static_cast<std::size_t>(s)] = 1;
-  posted_.store(number + 1, std::memory_order_release);
-  posted_.notify_one();  // a system call only if the thread sleeps
+  side_->posted.store(number + 1, std::memory_order_release);
+  side_->posted.notify_one();  // a system call only if the thread sleeps
   return next.request_count == requests.size();
 }
 
+bool ScriptLink::stuck(std::int64_t ticks) noexcept {
+  return given_up_ ||
+         (delivered_ != side_->posted.load(std::memory_order_relaxed) && unanswered_ > ticks);
+}
+
 void ScriptLink::wait() noexcept {
-  const std::uint32_t posted = posted_.load(std::memory_order_relaxed);
-  for (auto done = answered_.load(std::memory_order_acquire); done != posted;
-       done = answered_.load(std::memory_order_acquire)) {
-    answered_.wait(done);
-  }
+  const std::uint32_t posted = side_->posted.load(std::memory_order_relaxed);
+  const auto done = [this, posted] {
+    return side_->answered.load(std::memory_order_acquire) == posted;
+  };
+  if (!given_up_ && !wait_for(done)) give_up();
+}
+
+bool ScriptLink::wait_for(const std::function<bool()>& done) noexcept {
+  return core::wait_watched(thread_, behaviors::watch_limits(side_->script->settings().limits),
+                            side_->mutex, side_->came, done);
+}
+
+void ScriptLink::give_up() noexcept {
+  given_up_ = true;
+  side_->script->stop();
+  thread_.let_go();
+  const std::lock_guard lock(side_->mutex);
+  side_->messages.emplace_back(std::string("script error: ") + behaviors::kGaveUp);
 }
 
 std::vector<std::string> ScriptLink::take_messages() {
-  const std::lock_guard lock(messages_mutex_);
-  return std::exchange(messages_, {});
+  const std::lock_guard lock(side_->mutex);
+  return std::exchange(side_->messages, {});
 }
 
-void ScriptLink::work() noexcept {
+void ScriptLink::Side::work() noexcept {
   for (std::uint32_t number = 0;; ++number) {
-    posted_.wait(number, std::memory_order_acquire);
-    if (stop_.load()) return;
+    posted.wait(number, std::memory_order_acquire);
     Batch& next = batch(number);
     next.event_count = next.edit_count = 0;
     try {
-      answer(next);
+      if (!stop) answer(next);
     } catch (...) {  // out of memory: as if the scripts had asked for nothing
       next.event_count = next.edit_count = 0;
     }
-    answered_.store(number + 1, std::memory_order_release);
-    answered_.notify_all();
+    const bool last = stop;
+    {
+      const std::lock_guard lock(mutex);
+      answered.store(number + 1, std::memory_order_release);
+      ended = last;
+    }
+    came.notify_all();
+    if (last) return;
   }
 }
 
-void ScriptLink::answer(Batch& batch) {
-  const ScriptView view{&behavior_, batch.signals.data(), batch.parameters.data(),
+void ScriptLink::Side::answer(Batch& batch) {
+  const ScriptView view{behavior, batch.signals.data(), batch.parameters.data(),
                         batch.active.data(), batch.time};
   ScriptAnswer answer;
-  for (std::size_t k = 0; k < batch.request_count; ++k) {
+  for (std::size_t k = 0; k < batch.request_count && !script->stopped(); ++k) {
     const auto index = static_cast<std::size_t>(batch.requests[k].index);
     if (batch.requests[k].is_event) {
-      script_.handle(behavior_.events[index], view, answer);
+      script->handle(events[index], view, answer);
     } else {
-      script_.call(behavior_.calls[index].name, view, answer);
+      script->call(calls[index], view, answer);
     }
   }
   batch.event_count = std::min(answer.events.size(), kAnswers);
@@ -112,8 +146,8 @@ void ScriptLink::answer(Batch& batch) {
   if (answer.events.size() > kAnswers || answer.edits.size() > kAnswers) {
     answer.messages.emplace_back("script error: too many events or edits in one tick");
   }
-  const std::lock_guard lock(messages_mutex_);
-  messages_.insert(messages_.end(), answer.messages.begin(), answer.messages.end());
+  const std::lock_guard lock(mutex);
+  messages.insert(messages.end(), answer.messages.begin(), answer.messages.end());
 }
 
 }  // namespace footfall::engine

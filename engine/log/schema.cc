@@ -42,6 +42,7 @@ constexpr FieldRow kFields[] = {
     {"Edit", "limit_steps", 5, Field::TYPE_BOOL},
     {"Edit", "late", 6, Field::TYPE_BOOL},
     {"Edit", "requests_lost", 7, Field::TYPE_BOOL},
+    {"Edit", "scripts_stuck", 8, Field::TYPE_BOOL},
     {"Parameters", "name", 1, Field::TYPE_STRING, true},
     {"Parameters", "slot", 2, Field::TYPE_UINT32, true},
     {"Parameters", "size", 3, Field::TYPE_UINT32, true},

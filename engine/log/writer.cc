@@ -243,7 +243,7 @@ void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
     std::ranges::for_each(plan.predicted_vel, put);
     put(plan.extension);
   }
-  const bool flags = trace.limit_steps || trace.late || trace.requests_lost;
+  const bool flags = trace.limit_steps || trace.late || trace.requests_lost || trace.scripts_stuck;
   if (trace.writes.empty() && trace.events.empty() && !flags) return;
   constexpr std::size_t kWrites = 256;  // of one message
   for (std::size_t from = 0; from == 0 || from < trace.writes.size(); from += kWrites) {
@@ -264,6 +264,7 @@ void LogWriter::inputs(std::int64_t tick, const InputTrace& trace) noexcept {
       if (trace.limit_steps) proto.number(5, 1);
       if (trace.late) proto.number(6, 1);
       if (trace.requests_lost) proto.number(7, 1);
+      if (trace.scripts_stuck) proto.number(8, 1);
     }
     m.finish_message(LogChannel::edits, tick, proto.end());
   }

@@ -23,7 +23,7 @@ void InputTrace::clear() noexcept {
   events.clear();
   plans.clear();
   planned.clear();
-  limit_steps = late = requests_lost = false;
+  limit_steps = late = requests_lost = scripts_stuck = false;
 }
 
 void WriteWatch::find(std::span<const double> parameters,

@@ -20,6 +20,7 @@ struct InputTrace {
   bool limit_steps = false;                  // torque steps are limited in this tick
   bool late = false;                         // the tick began late
   bool requests_lost = false;                // of scripts, whose queue was full
+  bool scripts_stuck = false;                // one does not come back
   // Of a replay:
   std::vector<behaviors::PlanAnswer> planned;  // what the planners themselves gave
   std::function<void()> inspect;               // called just before the machine's tick, if there
@@ -28,7 +29,7 @@ struct InputTrace {
   void clear() noexcept;
   bool empty() const noexcept {
     return writes.empty() && events.empty() && plans.empty() && !limit_steps && !late &&
-           !requests_lost;
+           !requests_lost && !scripts_stuck;
   }
 };
 

@@ -32,8 +32,8 @@ class Outside {
   // Before the machine's tick. edited: an edit moves values in this tick, or the command has not
   // caught up with one yet. Returns whether this tick began late.
   bool deliver(std::int64_t tick, behaviors::Machine& machine, bool edited) noexcept;
-  // After the machine's tick; finds event.overflow if requests of scripts were dropped. time: s
-  // since start.
+  // After the machine's tick; finds event.overflow if requests of scripts were dropped, and
+  // script.stuck. time: s since start.
   FaultFindings post(std::int64_t tick, const behaviors::Machine& machine,
                      const core::SignalTable& signals, double time) noexcept;
   // Outside of the tick: in lock-step, until scripts have answered all that was posted.
@@ -53,6 +53,7 @@ class Outside {
   const behaviors::Behavior& behavior_;
   PlannerLink planners_;
   std::unique_ptr<ScriptLink> scripts_;
+  std::int64_t script_ticks_;  // after which a script that has not answered is stuck
   bool lockstep_;
   WriteWatch watch_;
   InputTrace* trace_ = nullptr;

@@ -18,10 +18,12 @@ behaviors::ScriptSettings settings_with(std::uint64_t seed) {
 
 ScenarioLua::ScenarioLua(const ScenarioDescription& scenario, engine::ControlLoop& loop,
                          std::uint64_t seed)
-    : loop_(loop), script_(settings_with(seed)), active_(loop.behavior().states.size()) {
+    : loop_(loop),
+      script_(std::make_shared<behaviors::Script>(settings_with(seed))),
+      active_(loop.behavior().states.size()) {
   for (const behaviors::ScriptFile& file : scenario.scripts) {
     behaviors::ScriptError ignored;  // the loader has told
-    script_.load(file.text, ignored);
+    behaviors::load_watched(script_, file.text, ignored);
   }
 }
 
@@ -33,7 +35,7 @@ ScenarioLua::Result ScenarioLua::call(const std::string& function) {
                                    loop_.time()};
   behaviors::ScriptAnswer answer;
   Result result;
-  result.failed = !script_.call(function, view, answer);
+  result.failed = !behaviors::call_watched(script_, function, view, answer);
   result.messages = std::move(answer.messages);
   result.batch.source = engine::EditSource::set;
   for (const behaviors::SlotValue& edit : answer.edits) {  // of one slot the last counts

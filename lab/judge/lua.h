@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "behaviors/script/script.h"
+#include "behaviors/script/watched.h"
 #include "engine/tick/control_loop.h"
 #include "lab/scenario/description.h"
 
@@ -26,7 +27,7 @@ class ScenarioLua {
 
  private:
   engine::ControlLoop& loop_;
-  behaviors::Script script_;
+  std::shared_ptr<behaviors::Script> script_;
   std::vector<std::uint8_t> active_;
 };
 

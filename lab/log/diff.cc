@@ -194,6 +194,7 @@ class Comparison {
       if (e.limit_steps) text += ", torque steps limited";
       if (e.late) text += ", late";
       if (e.requests_lost) text += ", requests of scripts lost";
+      if (e.scripts_stuck) text += ", a script is stuck";
       return text;
     });
   }

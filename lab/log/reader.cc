@@ -273,6 +273,7 @@ void Reader::edit(Bytes content) {
     if (field.number == 5) edit.limit_steps = field.integer != 0;
     if (field.number == 6) edit.late = field.integer != 0;
     if (field.number == 7) edit.requests_lost = field.integer != 0;
+    if (field.number == 8) edit.scripts_stuck = field.integer != 0;
   }
   if (values.size() != edit.writes.size()) throw Damaged{};
   for (std::size_t k = 0; k < values.size(); ++k) edit.writes[k].second = values[k];

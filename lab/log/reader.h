@@ -46,6 +46,7 @@ struct LoggedEdit {
   bool limit_steps = false;                    // torque steps were limited in this tick
   bool late = false;                           // the tick began late
   bool requests_lost = false;                  // of scripts, whose queue was full
+  bool scripts_stuck = false;                  // one does not come back
 };
 
 struct LoggedFile {

@@ -141,6 +141,7 @@ struct ReplayStage {
       trace.limit_steps |= log->edits[edit].limit_steps;
       trace.late |= log->edits[edit].late;
       trace.requests_lost |= log->edits[edit].requests_lost;
+      trace.scripts_stuck |= log->edits[edit].scripts_stuck;
     }
   }
 

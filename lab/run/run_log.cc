@@ -7,6 +7,7 @@
 
 #include "core/index.h"
 #include "core/text/json_text.h"
+#include "core/text/printable.h"
 #include "lab/run/end.h"
 #include "lab/run/log_setup.h"
 #include "lab/run/version.h"
@@ -61,7 +62,12 @@ std::string RunLog::state_name() const {
 }
 
 void RunLog::event(std::string_view kind, std::string_view name, std::string_view detail) {
-  if (log_) log_->event(loop_.ticks(), kind, name, detail);
+  if (log_ == nullptr) return;
+  // Scripts and command lines may say any bytes; the log's texts are UTF-8.
+  const std::string clean_name = core::is_plain_text(name) ? "" : core::printable_lines(name);
+  const std::string clean_detail = core::is_plain_text(detail) ? "" : core::printable_lines(detail);
+  log_->event(loop_.ticks(), kind, clean_name.empty() ? name : clean_name,
+              clean_detail.empty() ? detail : clean_detail);
 }
 
 void RunLog::after_start() {

@@ -198,10 +198,11 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
 
 void load_functions(ScenarioContext& context, const YamlNode& node) {
   context.scenario.scripts = behaviors::read_script_files(node, context.diagnostics);
-  behaviors::Script script({});
+  const auto script = std::make_shared<behaviors::Script>(behaviors::ScriptSettings());
   behaviors::run_script_files(context.scenario.scripts, script, context.diagnostics);
-  context.functions = script.functions();
-  if (script.patterns().empty()) return;
+  if (script->stopped()) return;
+  context.functions = script->functions();
+  if (script->patterns().empty()) return;
   context.error(node.mark, "misplaced-name",
                 "footfall.on has no meaning in a scenario: write `{on: EVENT, call: FUNCTION}`");
 }

@@ -55,6 +55,7 @@ constexpr auto kRules = std::to_array<FaultRule>({
      Reaction::keep_going,
      {}},
     {Fault::no_estimate, "the estimator cannot give a state", Reaction::safe_stop, kBlind},
+    {Fault::script_stuck, "a script does not come back from a call", Reaction::safe_stop, {}},
 });
 
 constexpr bool in_order() {

@@ -142,6 +142,7 @@ void load_call(LoadContext& context, const core::YamlNode& node) {
     if (native.name == *name) info.native = native.function;
   }
   if (std::find(known.begin(), known.end(), *name) == known.end()) {
+    if (context.scripts_failed) return;
     context.error(node.mark, "unknown-function",
                   fmt::format("unknown function '{}': no file of `scripts` defines it, and the "
                               "program registers none of this name{}",

@@ -11,7 +11,7 @@
 #include "behaviors/language/language.h"
 #include "behaviors/load/chart/steps.h"
 #include "behaviors/load/context.h"
-#include "behaviors/script/script.h"
+#include "behaviors/script/watched.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -58,8 +58,17 @@ void read_section(LoadContext& context, const core::YamlNode& node) {
     context.behavior.scripts = read_script_files(*files, context.diagnostics);
   }
   if (const auto* instructions = node.find("instructions")) {
-    context.behavior.script_instructions =
-        core::read_integer(*instructions, 1000, 1'000'000'000'000, context.diagnostics).value_or(0);
+    if (const auto read =
+            core::read_integer(*instructions, 1000, 1'000'000'000'000, context.diagnostics)) {
+      context.behavior.script_limits.instructions = *read;
+    }
+  }
+  if (const auto* deadline = node.find("deadline")) {
+    const auto read = core::read_quantity(*deadline, core::kTime, context.diagnostics);
+    if (read && !(*read > 0.0)) {
+      context.diagnostics.error(deadline->mark, "out-of-range", "expected a time above 0 s");
+    }
+    context.behavior.script_limits.deadline = read.value_or(0.0);
   }
 }
 
@@ -73,11 +82,11 @@ std::vector<ScriptFile> read_script_files(const core::YamlNode& node,
   return files;
 }
 
-void run_script_files(const std::vector<ScriptFile>& files, Script& script,
+void run_script_files(const std::vector<ScriptFile>& files, const std::shared_ptr<Script>& script,
                       core::Diagnostics& diagnostics) {
   for (const ScriptFile& file : files) {
     ScriptError problem;
-    if (script.load(file.text, problem)) continue;
+    if (load_watched(script, file.text, problem)) continue;
     const int index = diagnostics.add_file(file.path);
     diagnostics.error({index, problem.line, problem.line > 0 ? 1 : 0}, "script", problem.text);
   }
@@ -88,13 +97,14 @@ void load_scripts(LoadContext& context) {
   if (section == nullptr) return;
   read_section(context, *section);
   ScriptSettings settings;
-  if (context.behavior.script_instructions > 0) {
-    settings.instructions = context.behavior.script_instructions;
-  }
-  Script script(settings);
+  settings.limits = context.behavior.script_limits;
+  const auto script = std::make_shared<Script>(settings);
+  const int errors_before = context.diagnostics.error_count();
   run_script_files(context.behavior.scripts, script, context.diagnostics);
-  context.script_functions = script.functions();
-  context.script_patterns = script.patterns();
+  context.scripts_failed = context.diagnostics.error_count() > errors_before;
+  if (script->stopped()) return;
+  context.script_functions = script->functions();
+  context.script_patterns = script->patterns();
 }
 
 }  // namespace footfall::behaviors

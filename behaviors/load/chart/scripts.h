@@ -15,7 +15,7 @@ namespace footfall::behaviors {
 std::vector<ScriptFile> read_script_files(const core::YamlNode& node,
                                           core::Diagnostics& diagnostics);
 // Runs the files, which define functions and handlers; errors are reported at their own positions.
-void run_script_files(const std::vector<ScriptFile>& files, Script& script,
+void run_script_files(const std::vector<ScriptFile>& files, const std::shared_ptr<Script>& script,
                       core::Diagnostics& diagnostics);
 
 }  // namespace footfall::behaviors

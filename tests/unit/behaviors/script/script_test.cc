@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <memory>
+
+#include "behaviors/script/watched.h"
 #include "tests/unit/behaviors/behavior_test_support.h"
 
 namespace footfall::tests {
@@ -109,7 +113,7 @@ function g() local co = coroutine.wrap(function() while true do end end) co() en
 
 TEST(Script, MemoryIsBounded) {
   Bench bench("function f() local t = {} while true do t[#t + 1] = string.rep('x', 1000) end end",
-              {{}, 0, 1'000'000'000, 4'000'000});
+              {{}, 0, {1'000'000'000}, 4'000'000});
   EXPECT_FALSE(bench.call("f"));
   EXPECT_NE(bench.answer.messages[0].find("more memory"), std::string::npos);
 }
@@ -124,6 +128,77 @@ TEST(Script, FilesProcessesAndClocksAreOutOfReach) {
   Bench bench("function f() io.open('/nowhere/x') end");
   EXPECT_FALSE(bench.call("f"));
   EXPECT_NE(bench.answer.messages[0].find("footfall run --allow files"), std::string::npos);
+}
+
+// What a script calls that is not there says what to use instead.
+TEST(Script, AFunctionThatIsNotThereNamesWhatToUse) {
+  const std::vector<std::array<std::string, 2>> cases = {
+      {"print('x')", "line 1: print is not there: use footfall.log(TEXT)"},
+      {"os.time()", "line 1: os.time is not there: runs must repeat: footfall.time()"},
+      {"os.clock()", "footfall.time()"},
+      {"os.getenv('HOME')", "--allow"},
+      {"io.write('x')", "--allow files"},
+      {"require('x')", "name all Lua files in the behavior's `scripts:`"},
+      {"load('return 1')", "`scripts:`"},
+      {"math.randomseed(1)", "--seed"},
+      {"debug.traceback()", "debug.traceback is not there"},
+      {"package.loaded.x = 1", "package.loaded is not there"},
+      {"collectgarbage()", "cleaned up by itself"},
+      {"setmetatable({}, {__gc = function() end})", "__gc is not there"},
+  };
+  for (const auto& [call, said] : cases) {
+    Bench bench("function f() " + call + " end");
+    ASSERT_TRUE(bench.loaded) << call;
+    EXPECT_FALSE(bench.call("f")) << call;
+    EXPECT_NE(bench.answer.messages.at(0).find(said), std::string::npos)
+        << call << ": " << bench.answer.messages[0];
+  }
+  // Permissions do not bring the clock.
+  Bench allowed("function f() os.time() end", {{true, true}});
+  EXPECT_FALSE(allowed.call("f"));
+  EXPECT_NE(allowed.answer.messages.at(0).find("footfall.time()"), std::string::npos);
+}
+
+TEST(Script, AnErrorOfAnyTypeHasALine) {
+  for (const char* error : {"error({code = 7})", "error(nil)", "error(42)", "error()"}) {
+    Bench bench(std::string("function f()\n  ") + error + "\nend");
+    EXPECT_FALSE(bench.call("f"));
+    EXPECT_TRUE(bench.answer.messages.at(0).starts_with("script error: line 2: "))
+        << error << ": " << bench.answer.messages[0];
+  }
+}
+
+TEST(Script, AByteOrderMarkAndAProgramsLineAreSkippedAndLinesKeepTheirNumbers) {
+  for (const char* head :
+       {"\xEF\xBB\xBF", "#!/usr/bin/lua\n", "\xEF\xBB\xBF#!/usr/bin/env lua\n"}) {
+    Bench bench(std::string(head) + "function f() end");
+    EXPECT_TRUE(bench.loaded) << head << bench.error.text;
+  }
+  Bench bench("#!/usr/bin/lua\nfunction f( end");
+  EXPECT_FALSE(bench.loaded);
+  EXPECT_EQ(bench.error.line, 2);
+}
+
+// Functions of Lua's library count no instructions: half a second of backtracking each.
+TEST(Script, WhatDoesNotComeBackIsGivenUp) {
+  const std::string slow = "string.find(('a'):rep(1000), '.-.-.-b')";
+  ScriptSettings settings;
+  settings.limits.deadline = 0.02;
+  const auto at_load = std::make_shared<Script>(settings);
+  ScriptError error;
+  EXPECT_FALSE(behaviors::load_watched(at_load, slow, error));
+  EXPECT_NE(error.text.find("does not end"), std::string::npos) << error.text;
+  EXPECT_FALSE(behaviors::load_watched(at_load, "x = 1", error));  // never used again
+
+  Bench bench("function f() end");
+  const auto script = std::make_shared<Script>(settings);
+  ASSERT_TRUE(behaviors::load_watched(
+      script, "function f() " + slow + " footfall.set('speed', 1) end function g() end", error));
+  EXPECT_TRUE(behaviors::call_watched(script, "g", bench.view, bench.answer));
+  EXPECT_FALSE(behaviors::call_watched(script, "f", bench.view, bench.answer));
+  EXPECT_NE(bench.answer.messages.at(0).find("does not end"), std::string::npos);
+  EXPECT_TRUE(bench.answer.edits.empty());
+  EXPECT_FALSE(behaviors::call_watched(script, "g", bench.view, bench.answer));
 }
 
 TEST(Script, ARunMayAllowFilesWithoutProcesses) {

@@ -37,8 +37,8 @@ std::string behavior_text(const std::string& robot, std::string_view fault) {
   return fmt::format(R"(
 behavior: 1
 robot: {}
-events: {{flood: an event that nobody waits for, work: an action that fails}}
-parameters: {{narrow: {{value: 1, range: [0, 2]}}}}
+events: {{flood: an event that nobody waits for, work: an action that fails, hang: for a script}}
+{}parameters: {{narrow: {{value: 1, range: [0, 2]}}}}
 planners: {{foot: {{type: velocity_reversal, kappa: 0.4, reversal: 185 ms}}}}
 machine:
   safe: limp
@@ -57,8 +57,16 @@ machine:
                  with: {{stance: right_foot, swing: left_foot, switch_in: 100 ms}}}}]
     limp: {{contacts: [], tasks: {{rest: {{type: joint_damping, priority: 1, gains: {{kd: 5}}}}}}}}
 )",
-                     robot, fault);
+                     robot,
+                     fault == core::fault_name(Fault::script_stuck)
+                         ? "scripts: {files: slow.lua, deadline: 20 ms}\n"
+                         : "",
+                     fault);
 }
+
+// About half a second in one function of Lua's library, which counts no instructions.
+constexpr const char* kSlowScript =
+    "footfall.on('hang', function() string.find(('a'):rep(1000), '.-.-.-b') end)";
 
 // How a fault is provoked, and what is to be seen of it.
 struct Provocation {
@@ -133,6 +141,10 @@ Provocation provocation(Fault fault) {
       return {.spoil = straighten_legs, .after_machine = true};
     case Fault::no_estimate:
       return {.spoil = [](hal::Sensors& s) { s.has_truth = false; }};
+    case Fault::script_stuck:  // waited for and given up after the tick
+      return {.act = [](engine::ControlLoop& loop, Meddler&) { raise(loop, "hang", 1); },
+              .delay = 1,
+              .after_machine = true};
     case Fault::count:
       break;
   }
@@ -179,6 +191,7 @@ class FaultReaction : public testing::TestWithParam<Case> {
                                     "limits: {{swing: {}, overruns: {}}}\nfaults: {{{}: {}}}\n",
                                     fs::absolute(FOOTFALL_SOURCE_DIR).string(), swing, kLate, name,
                                     kReactionNames[static_cast<std::size_t>(reaction)]));
+    write("slow.lua", kSlowScript);
     write("behavior.yaml", behavior_text(path("robot.yaml"), name));
     core::Diagnostics diagnostics;
     behavior_ = behaviors::load_behavior(path("behavior.yaml"), {}, diagnostics);
