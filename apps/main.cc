@@ -10,6 +10,7 @@
 #include "apps/log/report_command.h"
 #include "apps/shared/commands.h"
 #include "apps/shared/live_options.h"
+#include "apps/shared/usage.h"
 #include "core/process/standard_streams.h"
 #include "core/realtime/watched_thread.h"
 #include "lab/process/pool.h"
@@ -39,6 +40,7 @@ int run_command(int argc, char** argv) {
   footfall::apps::add_config_command(app, exit_code);
   footfall::apps::add_set_command(app, exit_code);
   footfall::apps::add_new_command(app, exit_code);
+  footfall::apps::add_list_command(app, exit_code);
   footfall::apps::add_report_command(app, exit_code);
   footfall::apps::add_runs_command(app, exit_code);
   footfall::apps::add_events_command(app, exit_code);
@@ -57,7 +59,7 @@ int run_command(int argc, char** argv) {
       std::fputs(text.str().c_str(), stdout);
       return footfall::apps::kGood;
     }
-    std::fprintf(stderr, "footfall: error: %s (see footfall --help)\n", error.what());
+    std::fputs(footfall::apps::usage_error(app, error, argc, argv).c_str(), stderr);
     return footfall::apps::kBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "footfall: error: %s\n", error.what());

@@ -13,6 +13,8 @@
 #include "behaviors/load/context.h"
 #include "behaviors/load/control/steps.h"
 #include "behaviors/load/steps.h"
+#include "core/diagnostics/did_you_mean.h"
+#include "core/text/search_folders.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -27,16 +29,20 @@ void load_robot(LoadContext& context, const std::string& path) {
     name = *text;
   }
   context.behavior.has_robot = true;
-  std::vector<std::string> search = context.options.search;
+  const std::vector<std::string>& search = context.options.search;
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const std::string beside = folder.empty() ? name : folder + "/" + name;
-  std::string file = model::find_robot_file(name, search);
+  const std::vector<std::string> folders = core::search_from(path, search);
+  std::string file = model::find_robot_file(name, folders);
   std::error_code unreadable;  // a name too long for a path, a folder closed to us
   if (file.empty() && std::filesystem::is_regular_file(beside, unreadable)) file = beside;
   if (file.empty()) {
-    context.error(node == nullptr ? core::Mark{} : node->mark, "unknown-robot",
-                  fmt::format("unknown robot '{}': no such file, and no robots/{}/robot.yaml in {}",
-                              name, name, fmt::join(search, ", ")));
+    context.error(
+        node == nullptr ? core::Mark{} : node->mark, "unknown-robot",
+        fmt::format("unknown robot '{}': no such file, and no robots/{}/robot.yaml "
+                    "beside this file, above it, or in {}{}",
+                    name, name, fmt::join(search, ", "),
+                    core::did_you_mean(name, core::names_in(folders, "robots", "robot.yaml"))));
     return;
   }
   context.behavior.robot = model::load_robot(file, context.diagnostics);

@@ -11,7 +11,9 @@
 #include "apps/suites/sweep_setup.h"
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/text/json_text.h"
+#include "core/text/search_folders.h"
 #include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
 #include "lab/suite/discovery.h"
@@ -77,15 +79,17 @@ void check_world_of(const lab::ScenarioDescription& scenario, core::Diagnostics&
   if (scenario.world.empty()) return;
   const std::filesystem::path folder = std::filesystem::path(scenario.path).parent_path();
   const std::string beside = sim::find_world_file((folder / scenario.world).string(), {});
-  const std::string path =
-      beside.empty() ? sim::find_world_file(scenario.world, search_path()) : beside;
+  const std::vector<std::string> folders = core::search_from(scenario.path, search_path());
+  const std::string path = beside.empty() ? sim::find_world_file(scenario.world, folders) : beside;
   if (!path.empty()) {
     sim::load_world(path, diagnostics);
   } else if (scenario.world_mark.line > 0) {
     diagnostics.error(scenario.world_mark, "cannot-read",
                       fmt::format("unknown world '{}': no such file here, and no "
-                                  "sim/worlds/{}.yaml in {}",
-                                  scenario.world, scenario.world, fmt::join(search_path(), ", ")));
+                                  "sim/worlds/{}.yaml here, above, or in the search path{}",
+                                  scenario.world, scenario.world,
+                                  core::did_you_mean_or_list(
+                                      scenario.world, core::names_in(folders, "sim/worlds"))));
   }
 }
 
@@ -112,6 +116,7 @@ void check_file(const std::string& file, const CheckOptions& options,
         diagnostics);
     return;
   }
+  if (!behavior_is_there(file, diagnostics)) return;
   const std::string path = find_behavior_file(file);
   const std::string key = lab::first_key(path, behaviors::library_folders(search_path()));
   const auto kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return key == k.key; });

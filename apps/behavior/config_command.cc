@@ -45,6 +45,7 @@ const core::KeyTable* table_of(const core::YamlNode& root) {
 
 void load(const ConfigOptions& options, Config& config) {
   const auto settings = split_settings(options.set, config.diagnostics);
+  if (!behavior_is_there(options.file, config.diagnostics)) return;
   config.root =
       core::load_yaml_with_base(find_behavior_file(options.file), config.diagnostics,
                                 &config.history, behaviors::library_folders(search_path()));

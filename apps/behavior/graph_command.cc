@@ -38,6 +38,10 @@ int graph(const GraphOptions& options) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions load;
   load.search = search_path();
+  if (!behavior_is_there(options.file, diagnostics)) {
+    print_diagnostics(diagnostics);
+    return kBadInput;
+  }
   auto diagram = behaviors::load_diagram(find_behavior_file(options.file), load, diagnostics);
   print_diagnostics(diagnostics);
   if (!diagram) return kBadInput;

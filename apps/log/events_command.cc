@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
+#include <locale>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
@@ -36,8 +38,8 @@ double read_time(const std::string& text, const char* option, double otherwise) 
 
 // A kind that no log can contain is an error; one that only this log lacks is not.
 void check_kinds(const std::vector<std::string>& kinds, const lab::Log& log) {
-  std::set<std::string> known = {"transition", "mark", "step", "log",
-                                 "fault",      "plan", "push", "end"};
+  std::set<std::string> known = {"transition", "mark", "step",   "log", "fault", "plan",
+                                 "push",       "edit", "reload", "gap", "end"};
   for (const lab::LoggedEvent& event : log.events) known.insert(event.kind);
   const std::vector<std::string> names(known.begin(), known.end());
   for (const std::string& kind : kinds) {
@@ -54,23 +56,51 @@ std::string text_of(const lab::LoggedEvent& event) {
                      name, detail.empty() ? "" : "  ", detail.empty() ? "" : between, detail);
 }
 
+// What the detail of some kinds says, as values: of a fault how often, where, how much; of a step
+// its clearance and flight; of a plan the foothold.
+void add_fields(const lab::LoggedEvent& event, nlohmann::ordered_json& line) {
+  std::istringstream text(event.detail);
+  text.imbue(std::locale::classic());
+  std::string word, unit;
+  double x = 0.0, y = 0.0, z = 0.0;
+  if (event.kind == "fault") {
+    std::int64_t count = 0;
+    if (text >> count) line["count"] = count;
+    if (text.get() == ',' && text >> word >> x >> unit) {
+      line.update({{"place", word}, {"value", x}, {"unit", unit}});
+    }
+  } else if (event.kind == "step") {
+    std::string comma, flight;
+    if (text >> word >> x >> comma >> flight >> y && word == "clearance" && flight == "flight") {
+      line.update({{"clearance_m", x}, {"flight_s", y}});
+    }
+  } else if (event.kind == "plan" && text >> x >> y >> z) {
+    line["target_m"] = {x, y, z};
+  }
+}
+
 std::string json_of(const lab::LoggedEvent& event) {
-  const nlohmann::ordered_json line = {
+  nlohmann::ordered_json line = {
       {"time_s", event.time}, {"kind", event.kind}, {"name", event.name}, {"detail", event.detail}};
+  add_fields(event, line);
   return core::json_text(line) + "\n";
 }
 
 void print_events(const EventsOptions& options) {
   const double from = read_time(options.from, "--from", -std::numeric_limits<double>::infinity());
   const double to = read_time(options.to, "--to", std::numeric_limits<double>::infinity());
-  const lab::Log log = lab::read_log(log_path(options.log));
-  check_kinds(options.kinds, log);
-  if (!log.complete) fmt::print(stderr, "warning: the log was cut off; the events end there\n");
-  for (const lab::LoggedEvent& event : log.events) {
-    if (event.time < from || event.time > to) continue;
-    const bool asked = options.kinds.empty() ||
-                       std::ranges::find(options.kinds, event.kind) != options.kinds.end();
-    if (asked) fmt::print("{}", options.json ? json_of(event) : text_of(event));
+  for (const std::string& path : run_logs(options.log)) {
+    const lab::Log log = lab::read_log(path);
+    check_kinds(options.kinds, log);
+    if (!log.complete) {
+      fmt::print(stderr, "warning: the log '{}' was cut off; its events end there\n", path);
+    }
+    for (const lab::LoggedEvent& event : log.events) {
+      if (event.time < from || event.time > to) continue;
+      const bool asked = options.kinds.empty() ||
+                         std::ranges::find(options.kinds, event.kind) != options.kinds.end();
+      if (asked) fmt::print("{}", options.json ? json_of(event) : text_of(event));
+    }
   }
 }
 
@@ -84,7 +114,8 @@ void add_events_command(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "--kind", options->kinds,
-          "Only these, commas between: transition, mark, step, log, fault, plan, push, end")
+          "Only these, commas between: transition, mark, step, log, fault, plan, push, edit, "
+          "reload, gap, end")
       ->delimiter(',');
   command->add_option("--from", options->from, "From this time on, e.g. 2.5s");
   command->add_option("--to", options->to, "Up to this time");

@@ -8,6 +8,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "core/units/units.h"
 #include "core/yaml/glob.h"
@@ -38,6 +39,9 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+constexpr std::string_view kState = "state";
+constexpr std::string_view kTimeSignal = "time";  // a column of its own, exactly
+
 // Selected columns in log order; a pattern without match is an error.
 std::vector<std::size_t> chosen(const ExportArguments& arguments, const lab::Log& log) {
   std::vector<bool> wanted(log.signals.size(), arguments.signals.empty());
@@ -51,20 +55,27 @@ std::vector<std::size_t> chosen(const ExportArguments& arguments, const lab::Log
   }
   std::vector<std::size_t> columns;
   for (std::size_t s = 0; s < wanted.size(); ++s) {
-    if (wanted[s]) columns.push_back(s);
+    if (wanted[s] && log.signals[s].name != kTimeSignal) columns.push_back(s);
   }
   return columns;
+}
+
+// By value of the signal `state`; empty for a log without them.
+std::vector<std::string> state_paths(const lab::Log& log) {
+  std::vector<std::string> paths;
+  for (const auto& path : core::parse_json(log.get("states", "[]"))) paths.push_back(path);
+  return paths;
 }
 
 std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, double from,
                         double to) {
   const std::vector<std::size_t> columns = chosen(arguments, log);
   fmt::memory_buffer out;
-  fmt::format_to(std::back_inserter(out), "tick,time_s");
+  const std::vector<std::string> states = state_paths(log);
+  // Names as `footfall signals` has them; values in SI units.
+  fmt::format_to(std::back_inserter(out), "tick,time");
   for (const std::size_t s : columns) {
-    const std::string& unit = log.signals[s].unit;
-    fmt::format_to(std::back_inserter(out), ",{}",
-                   quoted(log.signals[s].name + (unit.empty() ? "" : " [" + unit + "]")));
+    fmt::format_to(std::back_inserter(out), ",{}", quoted(log.signals[s].name));
   }
   for (std::size_t row = 0; row < log.rows(); ++row) {
     if (log.time[row] < from || log.time[row] > to) continue;
@@ -73,6 +84,10 @@ std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, d
       const float value = log.column[s][row];
       if (value != value) {
         out.push_back(',');  // no value: an empty field
+      } else if (log.signals[s].name == kState && value >= 0.0F &&
+                 static_cast<std::size_t>(value) < states.size()) {
+        fmt::format_to(std::back_inserter(out), ",{}",
+                       quoted(states[static_cast<std::size_t>(value)]));
       } else {
         fmt::format_to(std::back_inserter(out), ",{}", value);
       }
@@ -95,11 +110,25 @@ std::string events_csv(const lab::Log& log, double from, double to) {
 int run_export(const ExportArguments& arguments) {
   const double from = time_of(arguments.from, "--from", 0.0);
   const double to = time_of(arguments.to, "--to", 1e12);
-  const lab::Log log =
-      lab::read_log(log_path(arguments.log), {.all_rows = arguments.all, .inputs = false});
-  if (!log.complete) std::fputs("warning: the log was cut off; the export ends there\n", stderr);
-  const std::string text =
-      arguments.events ? events_csv(log, from, to) : signals_csv(arguments, log, from, to);
+  const std::vector<std::string> paths = run_logs(arguments.log);
+  std::string text;
+  for (const std::string& path : paths) {
+    const lab::Log log = lab::read_log(path, {.all_rows = arguments.all, .inputs = false});
+    if (!log.complete) fmt::print(stderr, "warning: the log '{}' was cut off\n", path);
+    std::string part =
+        arguments.events ? events_csv(log, from, to) : signals_csv(arguments, log, from, to);
+    if (!text.empty()) {
+      const std::size_t head = part.find('\n') + 1;
+      if (text.compare(0, head, part, 0, head) != 0) {
+        throw std::runtime_error(fmt::format(
+            "the run goes on in '{}' with other signals: export its logs one by one, or choose "
+            "with --signals what all have",
+            path));
+      }
+      part.erase(0, head);
+    }
+    text += part;
+  }
   if (arguments.out.empty()) {
     std::fwrite(text.data(), 1, text.size(), stdout);
   } else {

@@ -29,7 +29,11 @@ std::int64_t tick_asked(const WhyArguments& arguments, const lab::Log& log) {
     throw std::runtime_error("--at: error: expected a time such as 12.3s, got '" + arguments.at +
                              "'");
   }
-  return std::llround(quantity->value * static_cast<double>(log.rate_mhz) / 1e3);
+  const std::int64_t tick = std::llround(quantity->value * static_cast<double>(log.rate_mhz) / 1e3);
+  // A summary gives the time after the last tick, rounded to milliseconds.
+  const std::int64_t end = log.inputs.first_tick + log.inputs.ticks();
+  const auto rounding = static_cast<std::int64_t>(1e-3 * static_cast<double>(log.rate_mhz) / 1e3);
+  return tick >= end && tick <= end + rounding ? end - 1 : tick;
 }
 
 int run_why(const WhyArguments& arguments) {

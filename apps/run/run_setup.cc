@@ -9,8 +9,10 @@
 #include <filesystem>
 
 #include "apps/shared/commands.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/realtime/allocation_count.h"
 #include "core/text/printable.h"
+#include "core/text/search_folders.h"
 #include "hal/backends/stub.h"
 #include "lab/run/run_log.h"
 
@@ -25,14 +27,17 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
   if (!beside.empty()) {
     file = sim::find_world_file((fs::path(beside).parent_path() / name).string(), {});
   }
-  if (file.empty()) file = sim::find_world_file(name, search_path());
+  const std::vector<std::string> folders =
+      beside.empty() ? search_path() : core::search_from(beside, search_path());
+  if (file.empty()) file = sim::find_world_file(name, folders);
   sim::WorldDescription world;
   if (file.empty()) {
     if (name != "flat") {
       throw InputError(
           fmt::format("{}: error: unknown world '{}': no such file, and no "
-                      "sim/worlds/{}.yaml in the search path",
-                      place.empty() ? "--world" : place, name, name));
+                      "sim/worlds/{}.yaml in the search path{}",
+                      place.empty() ? "--world" : place, name, name,
+                      core::did_you_mean_or_list(name, core::names_in(folders, "sim/worlds"))));
     }
     return world;
   }

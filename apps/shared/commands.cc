@@ -12,13 +12,17 @@
 
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/process/machine_error.h"
+#include "core/text/search_folders.h"
 
 namespace footfall::apps {
 namespace fs = std::filesystem;
 
 std::vector<std::string> search_path() {
-  std::vector<std::string> folders = {"."};
+  // What lies above the working folder, too: a project is found from inside it.
+  std::vector<std::string> folders = core::search_from("./file", {});
+  folders.insert(folders.begin(), ".");
   if (const char* variable = std::getenv("FOOTFALL_PATH")) {
     std::string text = variable;
     for (std::size_t begin = 0; begin <= text.size();) {
@@ -47,6 +51,17 @@ std::string find_behavior_file(const std::string& name) {
     }
   }
   return name;
+}
+
+bool behavior_is_there(const std::string& name, core::Diagnostics& diagnostics) {
+  const std::string path = find_behavior_file(name);
+  std::error_code ignored;
+  if (path != name || fs::exists(path, ignored)) return true;
+  const std::string hint = core::did_you_mean_or_list(
+      fs::path(name).stem().string(), core::names_in(search_path(), "behaviors/library"));
+  diagnostics.error({diagnostics.add_file(name), 0, 0}, "cannot-read",
+                    "no such file, and no behavior of this name in the library" + hint);
+  return false;
 }
 
 int tell_error(const std::exception& error, int otherwise) {
@@ -122,7 +137,7 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
   options.robot = robot;
   options.set = split_settings(set, diagnostics);
   std::unique_ptr<behaviors::Behavior> behavior;
-  if (!diagnostics.has_errors()) {
+  if (!diagnostics.has_errors() && behavior_is_there(path, diagnostics)) {
     behavior = behaviors::load_behavior(find_behavior_file(path), options, diagnostics);
   }
   if (behavior != nullptr && physics) behaviors::check_physics(*behavior, diagnostics);

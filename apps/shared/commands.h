@@ -49,6 +49,7 @@ std::vector<const core::FileTable*> file_tables();
 void add_fmt_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app, int& exit_code);
 void add_new_command(CLI::App& app, int& exit_code);
+void add_list_command(CLI::App& app, int& exit_code);
 void add_events_command(CLI::App& app, int& exit_code);
 void add_test_command(CLI::App& app, int& exit_code);
 void add_runs_command(CLI::App& app, int& exit_code);
@@ -67,6 +68,9 @@ std::vector<std::string> search_path();
 // NAME itself if it is a file, else behaviors/library/NAME.yaml in the search path; NAME if not
 // found.
 std::string find_behavior_file(const std::string& name);
+
+// False, and an error with a suggestion, if there is no such file and none in the library.
+bool behavior_is_there(const std::string& name, core::Diagnostics& diagnostics);
 
 // Loads a behavior, optionally checks its physics, and prints every problem on stderr; nullptr if
 // there were errors.

@@ -41,11 +41,11 @@ std::string rejected_text(const engine::LinkCounters& counters) {
 }  // namespace
 
 void add_live_options(CLI::App& command, LiveOptions& o) {
-  const std::string flag = fmt::format("--lcm{{{}}}", engine::kLiveUrl);
+  const std::string flag = fmt::format("--lcm{{{}}}", engine::default_url());
   CLI::Option* const lcm =
       command.add_flag(flag, o.url,
                        fmt::format("Can be tuned while it runs (footfall tune), at --lcm=URL or {}",
-                                   engine::kLiveUrl));
+                                   engine::default_url()));
   CLI::Option* const key =
       command
           .add_option("--lcm-key", o.key,

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
+#include "lab/run/reload_candidate.h"
 #include "lab/run/run_folder.h"
 
 namespace footfall::apps {
@@ -14,6 +15,16 @@ std::string log_path(const std::string& argument) {
   std::error_code ignored;
   return std::filesystem::is_directory(argument, ignored) ? lab::newest_run(argument) + "/log.mcap"
                                                           : argument;
+}
+
+std::vector<std::string> run_logs(const std::string& argument) {
+  std::vector<std::string> logs = {log_path(argument)};
+  if (logs.front() == argument) return logs;
+  const std::string folder = std::filesystem::path(logs.front()).parent_path().string();
+  for (int k = 1; std::filesystem::exists(lab::reload_log(folder, k)); ++k) {
+    logs.push_back(lab::reload_log(folder, k));
+  }
+  return logs;
 }
 
 lab::Log read_whole_log(const std::string& argument) {

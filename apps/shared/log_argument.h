@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "lab/log/reader.h"
 
@@ -9,6 +10,9 @@ namespace footfall::apps {
 
 // Path of the log; the argument may be its folder, or a folder of runs, whose newest one is meant.
 std::string log_path(const std::string& argument);
+
+// All logs of a run, in order: its reloads have one each. A log named by its file is alone.
+std::vector<std::string> run_logs(const std::string& argument);
 
 // Reads all rows and inputs; prints a note on stderr if the log is truncated. Throws
 // std::runtime_error.

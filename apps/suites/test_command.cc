@@ -11,6 +11,8 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "core/process/file_lock.h"
+#include "core/process/stop_signals.h"
 #include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "core/units/units.h"
@@ -273,6 +275,17 @@ int bless_traces(const TestOptions& options, const Suite& suite) {
   return refused ? kRobotFailed : kGood;
 }
 
+// A session owns its folder; shards share one.
+core::FileLock claim_folder(const TestOptions& options) {
+  std::string part = options.shard;
+  std::ranges::replace(part, '/', '-');
+  fs::create_directories(options.out);
+  core::FileLock lock(fmt::format("{}/.lock{}", options.out, part));
+  if (lock.held()) return lock;
+  throw InputError(
+      fmt::format("--out: error: another session writes to the folder '{}'", options.out));
+}
+
 int test(const TestOptions& options) {
   lab::SuiteSettings settings = settings_of(options);
   Suite suite;
@@ -284,6 +297,7 @@ int test(const TestOptions& options) {
                options.rerun_failed ? "nothing failed in the last session" : "an empty shard");
     return kGood;
   }
+  const core::FileLock lock = claim_folder(options);
   settings.stop = core::stop_on_signals();
   const StatusLine status;
   settings.progress = [&status](const lab::SuiteProgress& progress) { status.show(progress); };

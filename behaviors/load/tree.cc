@@ -4,6 +4,7 @@
 #include "behaviors/load/context.h"
 #include "behaviors/load/options.h"
 #include "behaviors/load/steps.h"
+#include "core/text/search_folders.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -40,8 +41,8 @@ std::vector<std::string> library_folders(const std::vector<std::string>& search)
 core::YamlNode load_tree(const std::string& path, const LoadOptions& options,
                          core::Diagnostics& diagnostics) {
   core::YamlHistory history;
-  core::YamlNode root =
-      core::load_yaml_with_base(path, diagnostics, &history, library_folders(options.search));
+  core::YamlNode root = core::load_yaml_with_base(
+      path, diagnostics, &history, library_folders(core::search_from(path, options.search)));
   warn_lost_keys(history, diagnostics);
   return root;
 }

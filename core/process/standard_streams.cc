@@ -50,6 +50,7 @@ void open_standard_streams() {
   open_descriptor(STDOUT_FILENO, O_WRONLY);
   open_descriptor(STDERR_FILENO, O_WRONLY);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // `ulimit -f`: an error of write() then, as on a full disk
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
   if (std::FILE* const out = stream_of(g_out, terminal ? _IOLBF : _IOFBF)) stdout = out;
   if (std::FILE* const err = stream_of(g_err, _IONBF)) stderr = err;

@@ -6,9 +6,9 @@
 namespace footfall::core {
 
 // First thing in main(). Closed descriptors 0 to 2 are opened on the null device, so that no file
-// of the command gets their number and what is printed. SIGPIPE is ignored. From here on writing to
-// stdout and stderr never fails: what could not be written to stdout is remembered and told by
-// finish_standard_output(); what could not be written to stderr is lost.
+// of the command gets their number and what is printed. SIGPIPE and SIGXFSZ are ignored. From here
+// on writing to stdout and stderr never fails: what could not be written to stdout is remembered
+// and told by finish_standard_output(); what could not be written to stderr is lost.
 void open_standard_streams();
 
 // Whether something could not be written to stdout. Commands that print until they are stopped look

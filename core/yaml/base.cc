@@ -126,8 +126,9 @@ std::string find_base(const std::string& path, const YamlNode& base, Chain& chai
         if (file->path().extension() == ".yaml") known.push_back(file->path().stem().string());
       }
     }
-    problem += fmt::format(", and no '{}.yaml' in {}{}", name, fmt::join(chain.library, ", "),
-                           did_you_mean(name, known));
+    problem += fmt::format(
+        ", and no '{}.yaml' in a behaviors/library here, above, or in the search path{}", name,
+        did_you_mean(name, known));
   }
   chain.diagnostics.error(base.mark, "base", problem);
   return {};

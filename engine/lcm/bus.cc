@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <stdexcept>
@@ -33,6 +34,15 @@ constexpr std::size_t kLargestDatagram = 65'536;  // bytes
   throw std::invalid_argument(
       fmt::format("'{}' {}; expected a URL such as '{}'", url, why, kLiveUrl));
 }
+
+}  // namespace
+
+std::string default_url() {
+  const char* const variable = std::getenv("LCM_DEFAULT_URL");
+  return variable != nullptr && *variable != '\0' ? variable : kLiveUrl;
+}
+
+namespace {
 
 int whole_number(const std::string& url, std::string_view text, const char* what, int least,
                  int most) {

@@ -11,6 +11,9 @@
 
 namespace footfall::engine {
 
+// The address without one on the command line: $LCM_DEFAULT_URL, as in all tools of LCM, else this
+// host alone.
+std::string default_url();
 inline constexpr const char* kLiveUrl = "udpm://239.255.76.67:7667?ttl=0";
 inline constexpr const char* kLivePrefix = "FOOTFALL";
 

@@ -91,7 +91,7 @@ struct LiveClient::Impl {
   }
 
   static std::string url_of(const LiveClientSettings& how) {
-    return how.url.empty() ? kLiveUrl : how.url;
+    return how.url.empty() ? default_url() : how.url;
   }
   std::string channel(const char* name) const { return settings.prefix + "_" + name; }
   const LiveKey* key() const { return settings.key ? &*settings.key : nullptr; }

@@ -11,6 +11,8 @@
 
 #include "behaviors/load/chart/scripts.h"
 #include "behaviors/loader.h"
+#include "core/diagnostics/did_you_mean.h"
+#include "core/text/search_folders.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"
 #include "model/mjcf.h"

@@ -68,7 +68,7 @@ class Logs(unittest.TestCase):
     def test_export_writes_what_was_asked_for(self):
         done = self.footfall("export", "a", "--csv", "--signals", "com.pos.*", "--from", "0.2s", "--to", "0.21s")
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0], "tick,time_s,com.pos.x [m],com.pos.y [m],com.pos.z [m]")
+        self.assertEqual(lines[0], "tick,time,com.pos.x,com.pos.y,com.pos.z")
         self.assertEqual([line.split(",")[0] for line in lines[1:]], ["300", "306", "312"])
         self.refused(self.footfall("export", "a", "--signals", "com.poss"), "com.poss")
         events = self.footfall("export", "a", "--csv", "--events", "-o", "events.csv")
