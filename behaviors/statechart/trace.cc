@@ -161,7 +161,8 @@ void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::o
   statechart.start(tick);
   run(-1);
   write_line(behavior, statechart, nullptr, out);
-  for (const TraceStep& step : steps) {
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const TraceStep& step = steps[k];
     if (step.after < 0.0) {
       run(index_of(chart.events, step.event));
       write_line(behavior, statechart, &step.event, out);
@@ -173,6 +174,8 @@ void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::o
       ++tick;
       run(-1);
     }
+    // Only an event prints a line; but what the last delays led to would not be seen at all.
+    if (k + 1 == steps.size()) write_line(behavior, statechart, nullptr, out);
   }
 }
 

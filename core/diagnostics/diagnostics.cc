@@ -7,9 +7,21 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text/look_alike.h"
 #include "core/text/printable.h"
 
 namespace footfall::core {
+
+namespace {
+
+// A quoted word that looks right is wrong for a reader until the character is named that only looks
+// like the one to be typed.
+std::string with_look_alike(std::string text) {
+  if (text.find("U+") == std::string::npos) text += look_alike_hint(text);
+  return text;
+}
+
+}  // namespace
 
 int Diagnostics::add_file(const std::string& path) {
   const auto found = std::find(files_.begin(), files_.end(), path);
@@ -25,12 +37,14 @@ bool Diagnostics::is_new(Mark mark, std::string_view id, const std::string& text
 }
 
 void Diagnostics::error(Mark mark, std::string_view id, std::string text) {
+  text = with_look_alike(std::move(text));
   if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::error, mark, std::string(id), std::move(text)});
   ++error_count_;
 }
 
 void Diagnostics::warning(Mark mark, std::string_view id, std::string text) {
+  text = with_look_alike(std::move(text));
   if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::warning, mark, std::string(id), std::move(text)});
 }

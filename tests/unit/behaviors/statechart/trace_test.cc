@@ -50,6 +50,12 @@ TEST(Trace, DelaysOfAScriptPassOnAVirtualClockAndPrintNothing) {
             "{\"event\":null,\"active\":[\"a\"]}\n{\"event\":\"x\",\"active\":[\"a\"]}\n"
             "{\"event\":\"x\",\"active\":[\"b\"]}\n");
 }
+TEST(Trace, ADelayThatEndsAScriptPrintsWhatItLedTo) {
+  EXPECT_EQ(traced(chart("  states: {a: {after: 100 ms, to: b}, b: {}}"),
+                   {{-1.0, "x"}, {0.05, ""}, {0.05, ""}}),
+            "{\"event\":null,\"active\":[\"a\"]}\n{\"event\":\"x\",\"active\":[\"a\"]}\n"
+            "{\"event\":null,\"active\":[\"b\"]}\n");
+}
 TEST(Trace, AScriptWithAnErrorSaysWhere) {
   core::Diagnostics diagnostics;
   EXPECT_FALSE(
