@@ -7,7 +7,9 @@
 namespace footfall::behaviors {
 
 // Substitutes arguments in a tree: whole scalars, keys, parts of dotted names and of expressions.
-core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments);
+// An error in such a text is reported at the argument, unless that is a name of the robot.
+core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments,
+                          const model::RobotDescription& robot);
 
 // Loads a behavior's file, or its text, with its bases (tree.cc); the files one by one go to
 // `layers` if it is given.

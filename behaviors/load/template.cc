@@ -110,7 +110,7 @@ StateSource instantiate(LoadContext& context, const std::string& name, core::Mar
                         const core::YamlNode& body, Arguments arguments, const char* side,
                         const core::YamlNode& over, const Arguments& outer, int depth) {
   arguments.emplace_back("side", text_node(side, mark));
-  core::YamlNode keys = substitute(body, arguments);
+  core::YamlNode keys = substitute(body, arguments, context.behavior.robot);
   const auto is_args = [](const core::YamlEntry& entry) { return entry.key == "args"; };
   std::erase_if(keys.entries, is_args);
   merge_over_template(context, keys, over);

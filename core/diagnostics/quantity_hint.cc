@@ -140,21 +140,26 @@ std::string split_argument_hint(const std::vector<std::string>& arguments, std::
     const std::size_t equals = arguments[k].find('=');
     return equals != std::string::npos && equals > 0;
   };
+  const auto begins = [&](std::size_t k) {  // `NAME = VALUE`
+    return k + 1 < arguments.size() && arguments[k + 1].starts_with('=');
+  };
   rest = false;
   std::size_t first = index;
-  while (first > 0 && !is_setting(first)) --first;
-  if (!is_setting(first)) return {};
-  // A value that goes on: a number or list whose unit or items are behind the blank.
-  const std::string_view value =
-      std::string_view(arguments[first]).substr(arguments[first].find('=') + 1);
-  const bool begins = value.empty() || is_digit(value.front()) ||
-                      std::string_view("+-.[{=$").find(value.front()) != std::string_view::npos;
-  if (!begins) return {};
+  while (first > 0 && !is_setting(first) && !begins(first)) --first;
+  if (!is_setting(first) && !begins(first)) return {};
   std::string whole = arguments[first];
   for (std::size_t k = first + 1; k < arguments.size() && !is_setting(k); ++k) {
-    whole += " " + arguments[k];
+    const bool tight = begins(first) && k <= first + 2;
+    whole += (tight ? "" : " ") + arguments[k];
   }
-  rest = index > first + 1;
+  // Only what goes on belongs to it: a number its unit, a list its items, an expression.
+  const std::string value = whole.substr(whole.find('=') + 1);
+  const bool list = !value.empty() && (value.front() == '[' || value.front() == '{');
+  const bool open = list && value.find_first_of("]}") + 1 == value.size();
+  if (!open && !value.starts_with('=') && !parse_quantity(value) && quantity_hint(value).empty()) {
+    return {};
+  }
+  rest = index > (begins(first) ? first : first + 1);
   return fmt::format("quote it: \"{}\"", whole);
 }
 

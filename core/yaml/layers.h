@@ -34,4 +34,24 @@ using TreeLoader = std::function<void(YamlNode, Diagnostics&)>;
 Diagnostics blame_edits(const YamlLayers& layers, const Diagnostics& before,
                         const Diagnostics& found, const TreeLoader& load);
 
+// Loads a file and its bases by `load(root, diagnostics)`, with errors where they were typed.
+// `lists`: with the warnings about lost items.
+template <typename Load>
+auto load_over_base(const std::string& path, bool lists, Diagnostics& diagnostics,
+                    const Load& load) {
+  YamlHistory history;
+  YamlLayers layers;
+  YamlNode root = load_yaml_with_base(path, diagnostics, &history, {}, &layers);
+  if (lists) warn_lost_items(history, diagnostics);
+  Diagnostics found = diagnostics;
+  auto result = load(root, found);
+  const bool failed = !root.is_null() && found.error_count() > diagnostics.error_count();
+  diagnostics =
+      failed
+          ? blame_edits(layers, diagnostics, found,
+                        [&](const YamlNode& tree, Diagnostics& problems) { load(tree, problems); })
+          : std::move(found);
+  return result;
+}
+
 }  // namespace footfall::core

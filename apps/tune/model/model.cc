@@ -270,7 +270,8 @@ std::vector<footfall_lcm::change_t> read_changes(const TuneModel& model,
   std::vector<footfall_lcm::change_t> changes;
   for (std::size_t k = 0; k < texts.size(); ++k) {
     bool rest = false;
-    const bool setting = texts[k].find('=') != std::string::npos;
+    const std::size_t equals = texts[k].find('=');
+    const bool setting = equals != std::string::npos && equals > 0;
     const std::string hint = setting ? "" : core::split_argument_hint(texts, k, rest);
     if (rest) continue;
     std::string problem;

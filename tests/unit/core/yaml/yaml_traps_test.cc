@@ -147,6 +147,9 @@ TEST(YamlTraps, AnArgumentThatTheShellHasSplitIsTold) {
   EXPECT_EQ(split_argument_hint(list, 1, rest), "quote it: \"goal=[1 m, 2 m]\"");
   split_argument_hint(list, 3, rest);
   EXPECT_TRUE(rest);
+  EXPECT_EQ(split_argument_hint({"lift_time", "=", "150ms"}, 0, rest),
+            "quote it: \"lift_time=150ms\"");
+  EXPECT_EQ(split_argument_hint({"a=1", "b"}, 1, rest), "");
   EXPECT_EQ(split_argument_hint({"ms"}, 0, rest), "");
   EXPECT_EQ(split_argument_hint({"name=fast", "more"}, 1, rest), "");
 }
