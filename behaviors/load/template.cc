@@ -159,7 +159,8 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
     second = first + "_image";
   if (first == second) {
     context.error(arguments->front().second.mark, "mirror",
-                  fmt::format("'{}' has no mirror image: name it in the robot's symmetry", first));
+                  fmt::format("'{}' has no mirror image: name it in the robot's symmetry{}", first,
+                              core::did_you_mean(first, context.contact_names())));
     return;
   }
   const core::YamlNode none = map_node(name.mark);

@@ -75,6 +75,8 @@ std::optional<std::vector<TraceStep>> read_script(const core::YamlNode& root,
     if (step) steps.push_back(*step);
   }
   if (!good) return std::nullopt;
+  // Only an event prints a line; but what a last delay leads to would not be seen at all.
+  if (!steps.empty() && steps.back().after >= 0.0) steps.back().shown = true;
   return steps;
 }
 
@@ -161,8 +163,7 @@ void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::o
   statechart.start(tick);
   run(-1);
   write_line(behavior, statechart, nullptr, out);
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    const TraceStep& step = steps[k];
+  for (const TraceStep& step : steps) {
     if (step.after < 0.0) {
       run(index_of(chart.events, step.event));
       write_line(behavior, statechart, &step.event, out);
@@ -174,8 +175,7 @@ void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::o
       ++tick;
       run(-1);
     }
-    // Only an event prints a line; but what the last delays led to would not be seen at all.
-    if (k + 1 == steps.size()) write_line(behavior, statechart, nullptr, out);
+    if (step.shown) write_line(behavior, statechart, nullptr, out);
   }
 }
 
