@@ -15,6 +15,7 @@
 #include "behaviors/load/steps.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/text/search_folders.h"
+#include "core/yaml/layers.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -127,12 +128,19 @@ bool blame_overrides(const core::YamlNode& root, const std::string& path,
   return found;
 }
 
-std::unique_ptr<Behavior> load(core::YamlNode root, const std::string& path,
-                               const LoadOptions& options, core::Diagnostics& diagnostics) {
+std::unique_ptr<Behavior> load(core::YamlNode root, const core::YamlLayers& layers,
+                               const std::string& path, const LoadOptions& options,
+                               core::Diagnostics& diagnostics) {
   core::Diagnostics trial = diagnostics;
   auto behavior = load_once(root, path, options, trial);
   const bool blamed = behavior == nullptr && !options.set.empty() &&
                       blame_overrides(root, path, options, diagnostics);
+  if (behavior == nullptr && !blamed && !root.is_null()) {
+    trial = core::blame_edits(layers, diagnostics, trial,
+                              [&](core::YamlNode tree, core::Diagnostics& problems) {
+                                load_once(std::move(tree), path, options, problems);
+                              });
+  }
   if (!blamed) diagnostics = std::move(trial);
   for (int k = 0; behavior != nullptr && k < diagnostics.file_count(); ++k) {
     if (!diagnostics.file(k).starts_with("--")) behavior->files.push_back(diagnostics.file(k));
@@ -159,13 +167,17 @@ bool compile_behavior(LoadContext& context, core::YamlNode root, const std::stri
 
 std::unique_ptr<Behavior> load_behavior(const std::string& path, const LoadOptions& options,
                                         core::Diagnostics& diagnostics) {
-  return load(load_tree(path, options, diagnostics), path, options, diagnostics);
+  core::YamlLayers layers;
+  core::YamlNode root = load_tree(path, options, diagnostics, &layers);
+  return load(std::move(root), layers, path, options, diagnostics);
 }
 
 std::unique_ptr<Behavior> load_behavior_text(std::string_view text, const std::string& name,
                                              const LoadOptions& options,
                                              core::Diagnostics& diagnostics) {
-  return load(load_tree_text(text, name, options, diagnostics), name, options, diagnostics);
+  core::YamlLayers layers;
+  core::YamlNode root = load_tree_text(text, name, options, diagnostics, &layers);
+  return load(std::move(root), layers, name, options, diagnostics);
 }
 
 }  // namespace footfall::behaviors

@@ -10,6 +10,7 @@
 #include "behaviors/loader.h"
 #include "behaviors/save/values.h"
 #include "core/units/units.h"
+#include "core/yaml/flow_traps.h"
 #include "core/yaml/value_reader.h"
 #include "core/yaml/yaml.h"
 
@@ -42,7 +43,9 @@ std::optional<behaviors::NamedValue> read_setting(const behaviors::Behavior& beh
   const std::vector<core::YamlNode> items =
       node.is_sequence() ? node.items : std::vector<core::YamlNode>(size, node);
   if (items.size() != size) {
-    core::report_expected(node, fmt::format("{} values, or one for all", size), diagnostics);
+    diagnostics.error(node.mark, "expected",
+                      fmt::format("expected {} values, or one for all, got {}{}", size,
+                                  items.size(), core::comma_hint(node)));
     return std::nullopt;
   }
   for (const core::YamlNode& item : items) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "core/diagnostics/quantity_hint.h"
 #include "core/units/units.h"
 
 namespace footfall::apps {
@@ -87,7 +88,7 @@ void finish_options(RunOptions& o) {
   const bool time = quantity && (quantity->bare || quantity->dimension == core::kTime);
   if (!time || !(quantity->value > 0.0)) {
     throw std::runtime_error("--for: error: expected a time such as 20s, got '" + o.duration_text +
-                             "'");
+                             "'" + core::quantity_hint(o.duration_text, core::kTime));
   }
   o.duration = quantity->value;
 }

@@ -13,6 +13,7 @@
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/did_you_mean.h"
+#include "core/diagnostics/quantity_hint.h"
 #include "core/process/machine_error.h"
 #include "core/text/search_folders.h"
 
@@ -115,11 +116,16 @@ void print_diagnostics(const core::Diagnostics& diagnostics) {
 std::vector<std::pair<std::string, std::string>> split_settings(const std::vector<std::string>& set,
                                                                 core::Diagnostics& diagnostics) {
   std::vector<std::pair<std::string, std::string>> pairs;
-  for (const std::string& text : set) {
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const std::string& text = set[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) {
-      diagnostics.error({diagnostics.add_file("--set"), 0, 0}, "set",
-                        fmt::format("expected NAME=VALUE, got '{}'", text));
+      bool rest = false;
+      const std::string hint = core::split_argument_hint(set, k, rest);
+      if (rest) continue;
+      diagnostics.error(
+          {diagnostics.add_file("--set"), 0, 0}, "set",
+          fmt::format("expected NAME=VALUE, got '{}'{}{}", text, hint.empty() ? "" : ": ", hint));
       continue;
     }
     pairs.emplace_back(text.substr(0, equals), text.substr(equals + 1));

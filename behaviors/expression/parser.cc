@@ -7,13 +7,14 @@
 #include <cmath>
 
 #include "core/diagnostics/diagnostics.h"
+#include "core/diagnostics/quantity_hint.h"
 
 namespace footfall::behaviors {
 
 Operand ExpressionParser::compile() {
   const Operand result = parse_choice();
   if (peek().kind != Token::Kind::end) {
-    fail(peek(), "bad-expression", "expected an operator, got " + describe(peek()));
+    fail(peek(), "bad-expression", "expected an operator, got " + describe(peek()) + hint());
   }
   return result;
 }
@@ -31,6 +32,19 @@ std::string ExpressionParser::describe(const Token& token) {
   }
 }
 
+// What was probably meant where a number goes on in a way that it cannot: `3,5`, `3 CM`.
+std::string ExpressionParser::hint() const {
+  if (at_ == 0 || tokens_[at_ - 1].kind != Token::Kind::number) return {};
+  const bool number_behind =
+      at_ + 1 < tokens_.size() && tokens_[at_ + 1].kind == Token::Kind::number;
+  if (is(",") && number_behind) return ": a decimal point, not a comma";
+  if (peek().kind != Token::Kind::name) return {};
+  std::string unit = core::quantity_hint("1 " + peek().text);
+  const std::size_t one = unit.find("'1 ");
+  if (one != std::string::npos) unit.erase(one + 1, 2);
+  return unit;
+}
+
 void ExpressionParser::fail(const Token& token, std::string id, std::string text) {
   error_ = {token.offset, std::move(id), std::move(text)};
   throw Failure{};
@@ -38,7 +52,8 @@ void ExpressionParser::fail(const Token& token, std::string id, std::string text
 
 void ExpressionParser::expect(std::string_view symbol) {
   if (!is(symbol)) {
-    fail(peek(), "bad-expression", fmt::format("expected '{}', got {}", symbol, describe(peek())));
+    fail(peek(), "bad-expression",
+         fmt::format("expected '{}', got {}{}", symbol, describe(peek()), hint()));
   }
   take();
 }

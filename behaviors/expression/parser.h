@@ -48,6 +48,7 @@ class ExpressionParser {
     return peek().kind == Token::Kind::name && peek().text == word;
   }
   static std::string describe(const Token& token);
+  std::string hint() const;
   [[noreturn]] void fail(const Token& token, std::string id, std::string text);
   void expect(std::string_view symbol);
   void emit(Op op, int index = 0, double value = 0.0);

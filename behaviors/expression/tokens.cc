@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/text/look_alike.h"
+
 namespace footfall::behaviors {
 namespace {
 
@@ -138,7 +140,8 @@ std::optional<std::vector<Token>> tokenize(std::string_view text, ExpressionErro
       read_name(text, at, token.text);
     } else if (!read_symbol(text, at, token)) {
       error = {token.offset, "bad-character",
-               fmt::format("unexpected '{}' in an expression{}", c, instead_of(c))};
+               fmt::format("unexpected '{}' in an expression{}", core::character_at(text, at),
+                           instead_of(c))};
       return std::nullopt;
     }
     if (tokens.size() >= kMaxTokens) {

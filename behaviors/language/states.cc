@@ -93,7 +93,9 @@ constexpr KeySpec kTransitionRows[] = {
     key("after", computed(quantity(kTime)),
         "enabled once the state has been active this long; alone it is a timer"),
     key("to", one_or_list(name_of("a state")),
-        "target; without it only actions are run, no state is exited or entered"),
+        "target; without it only actions are run, no state is exited or entered; `on` alone "
+        "absorbs "
+        "an event"),
     key("internal", boolean(),
         "whether a transition to a child of the state does not exit the state itself")
         .otherwise("false"),
@@ -185,7 +187,7 @@ constinit const core::KeyTable kTransitionKeys = {
     .id = "transition",
     .doc = "A transition to another state, or actions only.",
     .keys = kTransitionRows,
-    .one_of = {"on when after", "to do"}};
+    .one_of = {"on when after", "on to do"}};
 constinit const core::KeyTable kActionKeys = {
     .id = "action",
     .doc = "An action such as `{mark: step}`; actions in a list run in order.",

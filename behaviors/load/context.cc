@@ -71,6 +71,8 @@ int LoadContext::compile(const core::YamlNode& node, std::string_view text, std:
   const auto place = [&](int at) {
     core::Mark mark = node.mark;
     mark.column += static_cast<int>(offset) + (node.quoted ? 1 : 0) + marked.column(at);
+    // A name of the template's own text that is unknown is no mistake of an argument.
+    if (problem.id != "dimension" && !marked.is_inside(at)) mark.cause = {};
     return mark;
   };
   if (index < 0) {

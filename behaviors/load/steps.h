@@ -7,13 +7,17 @@
 namespace footfall::behaviors {
 
 // Substitutes arguments in a tree: whole scalars, keys, parts of dotted names and of expressions.
-core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments);
+// An error in such a text is reported at the argument, unless that is a name of the robot.
+core::YamlNode substitute(const core::YamlNode& node, const Arguments& arguments,
+                          const model::RobotDescription& robot);
 
-// Loads a behavior's file, or its text, with its bases (tree.cc).
+// Loads a behavior's file, or its text, with its bases (tree.cc); the files one by one go to
+// `layers` if it is given.
 core::YamlNode load_tree(const std::string& path, const LoadOptions& options,
-                         core::Diagnostics& diagnostics);
+                         core::Diagnostics& diagnostics, core::YamlLayers* layers = nullptr);
 core::YamlNode load_tree_text(std::string_view text, const std::string& name,
-                              const LoadOptions& options, core::Diagnostics& diagnostics);
+                              const LoadOptions& options, core::Diagnostics& diagnostics,
+                              core::YamlLayers* layers = nullptr);
 
 void apply_overrides(LoadContext& context);      // overrides.cc
 void load_parameters(LoadContext& context);      // parameters.cc

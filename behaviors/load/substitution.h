@@ -15,7 +15,10 @@ inline constexpr char kMarkEnd = '\x02';
 struct MarkedText {
   std::string text;
   std::vector<int> columns;  // by byte of `text`: offset in the file's text
+  std::vector<bool> inside;  // by byte of `text`: in a substituted part
   int column(int offset) const;
+  // Whether the word that begins there has a substituted part: `contact.$swing`.
+  bool is_inside(int offset) const;
 };
 
 MarkedText read_marked(std::string_view text);

@@ -5,6 +5,7 @@
 
 #include "behaviors/load/context.h"
 #include "behaviors/load/steps.h"
+#include "behaviors/load/template_merge.h"
 #include "core/diagnostics/did_you_mean.h"
 
 namespace footfall::behaviors {
@@ -31,28 +32,6 @@ core::YamlNode map_node(core::Mark mark) {
 void put(core::YamlNode& map, const std::string& key, core::YamlNode value) {
   const core::Mark mark = value.mark;
   map.entries.push_back({key, mark, false, std::move(value)});
-}
-
-bool is_template_key(std::string_view key) {
-  return key == "use" || key == "mirror" || key == "with" || key == "args";
-}
-
-// Merges `over` over `base`: maps by key, everything else is replaced, `off` removes.
-void merge(core::YamlNode& base, const core::YamlNode& over) {
-  for (const core::YamlEntry& entry : over.entries) {
-    if (is_template_key(entry.key)) continue;
-    const auto found = std::find_if(base.entries.begin(), base.entries.end(),
-                                    [&](const auto& e) { return e.key == entry.key; });
-    if (found == base.entries.end()) {
-      if (!core::is_off(entry.value)) base.entries.push_back(entry);
-    } else if (core::is_off(entry.value)) {
-      base.entries.erase(found);
-    } else if (found->value.is_map() && entry.value.is_map()) {
-      merge(found->value, entry.value);
-    } else {
-      found->value = entry.value;
-    }
-  }
 }
 
 const core::YamlNode* find_template(LoadContext& context, const core::YamlNode& name) {
@@ -131,10 +110,10 @@ StateSource instantiate(LoadContext& context, const std::string& name, core::Mar
                         const core::YamlNode& body, Arguments arguments, const char* side,
                         const core::YamlNode& over, const Arguments& outer, int depth) {
   arguments.emplace_back("side", text_node(side, mark));
-  core::YamlNode keys = substitute(body, arguments);
+  core::YamlNode keys = substitute(body, arguments, context.behavior.robot);
   const auto is_args = [](const core::YamlEntry& entry) { return entry.key == "args"; };
   std::erase_if(keys.entries, is_args);
-  merge(keys, over);
+  merge_over_template(context, keys, over);
   for (const auto& argument : outer) {
     const auto same = [&](const auto& mine) { return mine.first == argument.first; };
     if (std::none_of(arguments.begin(), arguments.end(), same)) arguments.push_back(argument);
@@ -180,7 +159,8 @@ void expand_mirror(LoadContext& context, StateSource& state, const core::YamlNod
     second = first + "_image";
   if (first == second) {
     context.error(arguments->front().second.mark, "mirror",
-                  fmt::format("'{}' has no mirror image: name it in the robot's symmetry", first));
+                  fmt::format("'{}' has no mirror image: name it in the robot's symmetry{}", first,
+                              core::did_you_mean(first, context.contact_names())));
     return;
   }
   const core::YamlNode none = map_node(name.mark);

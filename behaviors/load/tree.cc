@@ -5,6 +5,7 @@
 #include "behaviors/load/options.h"
 #include "behaviors/load/steps.h"
 #include "core/text/search_folders.h"
+#include "core/yaml/layers.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -39,20 +40,24 @@ std::vector<std::string> library_folders(const std::vector<std::string>& search)
 }
 
 core::YamlNode load_tree(const std::string& path, const LoadOptions& options,
-                         core::Diagnostics& diagnostics) {
+                         core::Diagnostics& diagnostics, core::YamlLayers* layers) {
   core::YamlHistory history;
-  core::YamlNode root = core::load_yaml_with_base(
-      path, diagnostics, &history, library_folders(core::search_from(path, options.search)));
+  core::YamlNode root =
+      core::load_yaml_with_base(path, diagnostics, &history,
+                                library_folders(core::search_from(path, options.search)), layers);
   warn_lost_keys(history, diagnostics);
+  core::warn_lost_items(history, diagnostics);
   return root;
 }
 
 core::YamlNode load_tree_text(std::string_view text, const std::string& name,
-                              const LoadOptions& options, core::Diagnostics& diagnostics) {
+                              const LoadOptions& options, core::Diagnostics& diagnostics,
+                              core::YamlLayers* layers) {
   core::YamlHistory history;
   core::YamlNode root = core::load_yaml_text_with_base(text, name, diagnostics, &history,
-                                                       library_folders(options.search));
+                                                       library_folders(options.search), layers);
   warn_lost_keys(history, diagnostics);
+  core::warn_lost_items(history, diagnostics);
   return root;
 }
 

@@ -75,6 +75,8 @@ std::optional<std::vector<TraceStep>> read_script(const core::YamlNode& root,
     if (step) steps.push_back(*step);
   }
   if (!good) return std::nullopt;
+  // Only an event prints a line; but what a last delay leads to would not be seen at all.
+  if (!steps.empty() && steps.back().after >= 0.0) steps.back().shown = true;
   return steps;
 }
 
@@ -173,6 +175,7 @@ void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::o
       ++tick;
       run(-1);
     }
+    if (step.shown) write_line(behavior, statechart, nullptr, out);
   }
 }
 

@@ -15,6 +15,7 @@ namespace footfall::behaviors {
 struct TraceStep {
   double after = -1.0;  // s; negative: an event
   std::string event;
+  bool shown = false;  // a delay that prints a line
 };
 
 // Loads `[{after: 100 ms}, {event: t2}]`; nullopt and errors if malformed.
@@ -31,9 +32,9 @@ std::vector<TraceStep> trace_events(std::string_view names);
 std::vector<std::string> unknown_events(const Behavior& behavior,
                                         const std::vector<TraceStep>& steps);
 
-// Writes one JSON line for the initial configuration and one after each event:
-// {"event":"t1","active":["b1","c1"]}. Time advances only during delays, at the robot's rate, or 1
-// kHz without a robot; signals stay 0.
+// Writes one JSON line for the initial configuration, one after each event and one after each delay
+// that is `shown`: {"event":"t1","active":["b1","c1"]}; without an event it is null. Time advances
+// only during delays, at the robot's rate, or 1 kHz without a robot; signals stay 0.
 void trace(const Behavior& behavior, const std::vector<TraceStep>& steps, std::ostream& out);
 
 }  // namespace footfall::behaviors

@@ -7,9 +7,21 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text/look_alike.h"
 #include "core/text/printable.h"
 
 namespace footfall::core {
+
+namespace {
+
+// A quoted word that looks right is wrong for a reader until the character is named that only looks
+// like the one to be typed.
+std::string with_look_alike(std::string text) {
+  if (text.find("U+") == std::string::npos) text += look_alike_hint(text);
+  return text;
+}
+
+}  // namespace
 
 int Diagnostics::add_file(const std::string& path) {
   const auto found = std::find(files_.begin(), files_.end(), path);
@@ -24,13 +36,32 @@ bool Diagnostics::is_new(Mark mark, std::string_view id, const std::string& text
       .second;
 }
 
+// Moves an error to its cause, where it says where it was found; false if there is one already.
+bool Diagnostics::move_to_cause(Mark& mark, std::string& text) {
+  const Place cause = mark.cause;
+  if (cause.file < 0) return true;
+  const Place found = mark.place();
+  if (silent_.contains({found.file, found.line, found.column})) return false;
+  if (!causes_.insert({cause.file, cause.line, cause.column}).second) return false;
+  // A value that stands here as a whole has its own place already, or one within it.
+  const bool own = found.file == cause.file && found.line == cause.line;
+  if (!own) {
+    text += fmt::format(" (needed at {}:{}:{})", file(found.file), found.line, found.column);
+    mark = {cause.file, cause.line, cause.column, {}};
+  }
+  return true;
+}
+
 void Diagnostics::error(Mark mark, std::string_view id, std::string text) {
+  if (!move_to_cause(mark, text)) return;
+  text = with_look_alike(std::move(text));
   if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::error, mark, std::string(id), std::move(text)});
   ++error_count_;
 }
 
 void Diagnostics::warning(Mark mark, std::string_view id, std::string text) {
+  text = with_look_alike(std::move(text));
   if (!is_new(mark, id, text)) return;
   items_.push_back({Severity::warning, mark, std::string(id), std::move(text)});
 }

@@ -11,11 +11,24 @@
 
 namespace footfall::core {
 
+struct Place {
+  int file = -1;  // index into the file list of Diagnostics
+  int line = 0;
+  int column = 0;
+  friend bool operator==(const Place&, const Place&) = default;
+};
+
 // A position in a text file; line and column count from 1, line 0 is the whole file.
 struct Mark {
   int file = -1;  // index into the file list of Diagnostics
   int line = 0;
   int column = 0;
+  // The place of a value that another text put here (a template's argument), which an error here
+  // follows from; file -1: none.
+  Place cause{};
+
+  Place place() const { return {file, line, column}; }
+  void set_cause(const Mark& mark) { cause = mark.cause.file >= 0 ? mark.cause : mark.place(); }
 };
 
 enum class Severity { error, warning };
@@ -34,7 +47,8 @@ class Diagnostics {
   // Registers a file and returns its index; equal paths get the same index.
   int add_file(const std::string& path);
   // Adds an error. Repeats of the same text at the same position are dropped, because templates,
-  // stacks and aliases may read one source line several times.
+  // stacks and aliases may read one source line several times. An error with a cause is reported
+  // there, once for each cause.
   void error(Mark mark, std::string_view id, std::string text);
   void warning(Mark mark, std::string_view id, std::string text);
   // Suppresses further diagnostics at this position: they would only follow from an earlier one.
@@ -51,11 +65,13 @@ class Diagnostics {
 
  private:
   bool is_new(Mark mark, std::string_view id, const std::string& text);
+  bool move_to_cause(Mark& mark, std::string& text);
 
   std::vector<std::string> files_;
   std::vector<Diagnostic> items_;
   std::unordered_set<std::string> said_;  // position, id and text of every item
   std::set<std::tuple<int, int, int>> silent_;
+  std::set<std::tuple<int, int, int>> causes_;  // with an error
   int error_count_ = 0;
 };
 

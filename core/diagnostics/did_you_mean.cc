@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/text/look_alike.h"
+
 namespace footfall::core {
 namespace {
 
@@ -44,8 +46,9 @@ bool same_letters(std::string_view a, std::string_view b) {
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLongestWord = 100;  // longer words are not typing mistakes
   if (word.size() > kLongestWord) return {};
+  const std::string typed = without_look_alikes(word);
   for (const std::string& candidate : candidates) {
-    if (same_letters(word, candidate)) return candidate;
+    if (same_letters(typed, candidate)) return candidate;
   }
   const int length = static_cast<int>(word.size());
   // Every one-letter word is within one edit of every other, so a guess would be worthless.

@@ -71,7 +71,6 @@ const UnitDefinition* find_unit(std::string_view name) {
   return nullptr;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 // Letters, the bytes of the micro sign, and %.
 bool is_unit_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' ||

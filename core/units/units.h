@@ -10,6 +10,7 @@ namespace footfall::core {
 
 // A space or tab.
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Exponents of metre, kilogram and second; an angle is dimensionless (rad = 1).
 struct Dimension {

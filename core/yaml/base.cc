@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/diagnostics/did_you_mean.h"
+#include "core/yaml/layers.h"
 #include "core/yaml/yaml.h"
 
 namespace footfall::core {
@@ -13,68 +14,6 @@ namespace footfall::core {
 namespace {
 
 namespace fs = std::filesystem;
-
-YamlEntry* find_entry(YamlNode& map, std::string_view key) {
-  const auto found = std::find_if(map.entries.begin(), map.entries.end(),
-                                  [key](const YamlEntry& entry) { return entry.key == key; });
-  return found == map.entries.end() ? nullptr : &*found;
-}
-
-bool removes(const YamlNode& node) {
-  return node.is_scalar() && !node.quoted && node.scalar == "off";
-}
-
-// Destination of the history, and the path of the map that is being merged.
-struct Recorder {
-  YamlHistory* history = nullptr;
-  std::string path{};
-
-  Recorder inside(const std::string& key) const {
-    return {history, path.empty() ? key : path + "." + key};
-  }
-  void add(YamlChange::Kind kind, const std::string& key, const YamlNode& old, Mark mark) const {
-    if (history != nullptr) history->push_back({kind, inside(key).path, old, mark});
-  }
-};
-
-// `KEY+: [...]`: appends the items to the base's list KEY.
-void append(YamlNode& base, YamlEntry&& own, const Recorder& recorder, Diagnostics& diagnostics) {
-  const std::string key = own.key.substr(0, own.key.size() - 1);
-  YamlEntry* const target = find_entry(base, key);
-  if (target == nullptr || !target->value.is_sequence()) {
-    diagnostics.error(own.key_mark, "append", fmt::format("the base has no list '{}'", key));
-  } else if (!own.value.is_sequence()) {
-    diagnostics.error(own.value.mark, "append",
-                      fmt::format("expected a list to append to '{}'", key));
-  } else {
-    recorder.add(YamlChange::Kind::appended, key, target->value, own.value.mark);
-    for (YamlNode& item : own.value.items) target->value.items.push_back(std::move(item));
-  }
-}
-
-// Merges `own` over `base`: maps key by key, everything else as a whole.
-void merge(YamlNode& base, YamlNode&& own, const Recorder& recorder, Diagnostics& diagnostics) {
-  base.mark = own.mark;
-  for (YamlEntry& entry : own.entries) {
-    if (entry.key.size() > 1 && entry.key.back() == '+' && !entry.key_quoted) {
-      append(base, std::move(entry), recorder, diagnostics);
-      continue;
-    }
-    YamlEntry* const old = find_entry(base, entry.key);
-    if (old == nullptr) {
-      base.entries.push_back(std::move(entry));
-    } else if (removes(entry.value)) {
-      recorder.add(YamlChange::Kind::removed, entry.key, old->value, entry.value.mark);
-      base.entries.erase(base.entries.begin() + (old - base.entries.data()));
-    } else if (old->value.is_map() && entry.value.is_map()) {
-      old->key_mark = entry.key_mark;
-      merge(old->value, std::move(entry.value), recorder.inside(entry.key), diagnostics);
-    } else {
-      recorder.add(YamlChange::Kind::replaced, entry.key, old->value, entry.value.mark);
-      *old = std::move(entry);
-    }
-  }
-}
 
 // The path of a base relative to the file that names it, for messages.
 std::string path_beside(const std::string& path, const std::string& other) {
@@ -94,6 +33,7 @@ struct Chain {
   const std::vector<std::string>& library;
   Diagnostics& diagnostics;
   const std::vector<FileChange>* changes = nullptr;  // unsaved new contents of files
+  YamlLayers* layers = nullptr;                      // receives the files, if it is given
 };
 
 YamlNode load_file(const std::string& path, const Chain& chain) {
@@ -139,7 +79,10 @@ YamlNode load_chain(const std::string& path, Chain& chain);
 // Replaces a tree that names a base by the base with the tree merged over it.
 YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
   const YamlNode* const base_node = root.find("base");
-  if (base_node == nullptr) return root;
+  if (base_node == nullptr) {
+    if (chain.layers != nullptr) chain.layers->files.push_back(root);
+    return root;
+  }
   const Mark place = base_node->mark;
   if (!base_node->is_scalar() || base_node->scalar.empty()) {
     chain.diagnostics.error(place, "base", "expected the path of a YAML file after 'base:'");
@@ -162,7 +105,8 @@ YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
     return {};
   }
   std::erase_if(root.entries, [](const YamlEntry& entry) { return entry.key == "base"; });
-  merge(base, std::move(root), Recorder{chain.history}, chain.diagnostics);
+  if (chain.layers != nullptr) chain.layers->files.push_back(root);
+  merge_over(base, std::move(root), chain.history, chain.diagnostics);
   return base;
 }
 
@@ -177,8 +121,9 @@ YamlNode load_chain(const std::string& path, Chain& chain) {
 }  // namespace
 
 YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
-                             YamlHistory* history, const std::vector<std::string>& library) {
-  Chain chain{{}, history, library, diagnostics};
+                             YamlHistory* history, const std::vector<std::string>& library,
+                             YamlLayers* layers) {
+  Chain chain{{}, history, library, diagnostics, nullptr, layers};
   return load_chain(path, chain);
 }
 
@@ -192,9 +137,9 @@ YamlNode load_changed_yaml_with_base(const std::string& path,
 
 YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
                                   Diagnostics& diagnostics, YamlHistory* history,
-                                  const std::vector<std::string>& library) {
+                                  const std::vector<std::string>& library, YamlLayers* layers) {
   const int errors_before = diagnostics.error_count();
-  Chain chain{{identity(name)}, history, library, diagnostics};
+  Chain chain{{identity(name)}, history, library, diagnostics, nullptr, layers};
   YamlNode root = resolve(load_yaml_text(text, name, diagnostics), name, chain);
   return diagnostics.error_count() == errors_before ? std::move(root) : YamlNode{};
 }

@@ -1,15 +1,21 @@
 // Checks a YAML text before it is parsed. Load time only.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "core/diagnostics/diagnostics.h"
 
 namespace footfall::core {
 
-// Reports text that yaml-cpp would accept or misread (one problem a line, at most 20): invalid
-// UTF-8 and control characters (id "bad-text"), tabs in the indentation (id "tab"). True if there
-// is none.
+// Turns every lone CR, a line end of YAML that yaml-cpp does not count as one, into LF. No place
+// moves by it.
+void make_line_ends_plain(std::string& text);
+
+// Reports text that yaml-cpp would accept or misread: another encoding than UTF-8, invalid bytes,
+// control characters and characters that only look like blanks where YAML needs one (id
+// "bad-text", each character once, with the number of lines), tabs in the indentation (id "tab",
+// one a line, at most 20). True if there is none.
 bool check_text(std::string_view text, int file, Diagnostics& diagnostics);
 
 }  // namespace footfall::core

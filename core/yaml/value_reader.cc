@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "core/diagnostics/did_you_mean.h"
 
@@ -16,10 +15,6 @@ namespace {
 constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
 constexpr std::string_view kDigits = "0123456789";
 
-std::string name_of(Dimension dimension, std::string_view what) {
-  return what.empty() ? dimension_name(dimension) : std::string(what);
-}
-
 // "a, b or c"
 std::string alternatives(const std::vector<std::string>& words) {
   std::string out;
@@ -28,12 +23,6 @@ std::string alternatives(const std::vector<std::string>& words) {
     out += words[i];
   }
   return out;
-}
-
-// The quantity in a scalar. Quotes are ignored, because numbers with a leading `*`, `%` or `+` must
-// be quoted in YAML.
-std::optional<Quantity> quantity_of(const YamlNode& node) {
-  return node.is_scalar() ? parse_quantity(node.scalar) : std::nullopt;
 }
 
 bool is_reserved(std::string_view text) {
@@ -131,7 +120,15 @@ bool expect_scalar(const YamlNode& node, std::string_view what, Diagnostics& dia
   return false;
 }
 
+void warn_cut(const YamlNode& text, Diagnostics& diagnostics) {
+  if (!text.cut) return;
+  diagnostics.warning(
+      text.mark, "cut-text",
+      fmt::format("'#' begins a comment: the text is only {}; quote it", describe(text)));
+}
+
 bool check_doc(const YamlNode& node, Diagnostics& diagnostics) {
+  warn_cut(node, diagnostics);
   const bool plain = !node.quoted && (node.scalar == "true" || node.scalar == "false" ||
                                       parse_quantity(node.scalar).has_value());
   if (node.is_scalar() && !plain) return true;
@@ -167,45 +164,6 @@ const YamlNode* require_key(const YamlNode& map, std::string_view key, Diagnosti
   return node;
 }
 
-std::optional<double> read_quantity(const YamlNode& node, Dimension expected,
-                                    Diagnostics& diagnostics, std::string_view what) {
-  const std::optional<Quantity> quantity = quantity_of(node);
-  if (quantity && (quantity->bare || quantity->dimension == expected)) return quantity->value;
-  report_expected(node, name_of(expected, what), diagnostics);
-  return std::nullopt;
-}
-
-bool read_quantity(const YamlNode& map, std::string_view key, Dimension expected, double& out,
-                   Diagnostics& diagnostics, std::string_view what) {
-  const YamlNode* const node = map.find(key);
-  if (node == nullptr) return false;
-  const std::optional<double> value = read_quantity(*node, expected, diagnostics, what);
-  if (value) out = *value;
-  return value.has_value();
-}
-
-std::optional<Quantity> read_any_quantity(const YamlNode& node, Diagnostics& diagnostics) {
-  const std::optional<Quantity> quantity = quantity_of(node);
-  if (!quantity) report_expected(node, "a number with or without a unit", diagnostics);
-  return quantity;
-}
-
-std::optional<double> read_bounded(const YamlNode& node, Dimension expected, double minimum,
-                                   double maximum, Diagnostics& diagnostics,
-                                   std::string_view what) {
-  const std::optional<double> value = read_quantity(node, expected, diagnostics, what);
-  if (!value) return std::nullopt;
-  if (*value >= minimum && *value <= maximum) return value;
-  const std::string unit = expected == kNone ? "" : " " + unit_text(expected);
-  const std::string bounds = std::isinf(maximum)
-                                 ? fmt::format("at least {:.6g}{}", minimum, unit)
-                                 : fmt::format("{:.6g} to {:.6g}{}", minimum, maximum, unit);
-  diagnostics.error(
-      node.mark, "out-of-range",
-      fmt::format("expected {}, {}, got {}", name_of(expected, what), bounds, describe(node)));
-  return std::nullopt;
-}
-
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t minimum,
                                          std::int64_t maximum, Diagnostics& diagnostics) {
   std::int64_t value = 0;
@@ -218,22 +176,6 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t mini
   }
   report_expected(node, fmt::format("a whole number from {} to {}", minimum, maximum), diagnostics);
   return std::nullopt;
-}
-
-std::optional<std::int64_t> read_millihertz(const YamlNode& node, Diagnostics& diagnostics) {
-  constexpr double kFastest = 1e6;  // Hz, far above any servo rate
-  const std::optional<double> hertz =
-      read_bounded(node, kRate, 1e-3, kFastest, diagnostics, "a rate in Hz");
-  if (!hertz) return std::nullopt;
-  const double exact = *hertz * 1e3;
-  const double rounded = std::round(exact);
-  // An exact number of millihertz differs by rounding only, which is far below 1e-9.
-  if (std::abs(exact - rounded) > 1e-9 * rounded) {
-    diagnostics.error(node.mark, "rate",
-                      fmt::format("expected a rate in whole millihertz, got {}", describe(node)));
-    return std::nullopt;
-  }
-  return static_cast<std::int64_t>(rounded);
 }
 
 std::optional<bool> read_bool(const YamlNode& node, Diagnostics& diagnostics) {
@@ -322,79 +264,6 @@ std::optional<std::vector<std::string>> read_texts(const YamlNode& node, Diagnos
     if (text) texts.push_back(*text);
   }
   return good ? std::optional(texts) : std::nullopt;
-}
-
-std::optional<std::array<double, 2>> read_pair(const YamlNode& node, Dimension expected,
-                                               Diagnostics& diagnostics, std::string_view what) {
-  if (!node.is_sequence() || node.items.size() != 2) {
-    const std::string got =
-        node.is_sequence() ? fmt::format("{} values", node.items.size()) : describe(node);
-    diagnostics.error(
-        node.mark, "expected",
-        fmt::format("expected a pair [{0}, {0}], got {1}", name_of(expected, what), got));
-    return std::nullopt;
-  }
-  const std::optional<double> first = read_quantity(node.items[0], expected, diagnostics, what);
-  const std::optional<double> second = read_quantity(node.items[1], expected, diagnostics, what);
-  if (!first || !second) return std::nullopt;
-  return std::array<double, 2>{*first, *second};
-}
-
-std::optional<std::array<double, 2>> read_range(const YamlNode& node, Dimension expected,
-                                                Diagnostics& diagnostics, std::string_view what) {
-  const auto pair = read_pair(node, expected, diagnostics, what);
-  if (pair && (*pair)[0] > (*pair)[1]) {
-    diagnostics.error(node.mark, "range",
-                      fmt::format("expected [minimum, maximum], got {} before {}",
-                                  describe(node.items[0]), describe(node.items[1])));
-    return std::nullopt;
-  }
-  return pair;
-}
-
-std::optional<std::vector<double>> read_vector(const YamlNode& node, Dimension expected,
-                                               const std::vector<std::string>& axes,
-                                               Diagnostics& diagnostics, double fallback,
-                                               std::string_view what) {
-  std::vector<double> values(axes.size(), fallback);
-  bool good = true;
-  const auto take = [&](std::size_t axis, const YamlNode& value) {
-    const std::optional<double> number = read_quantity(value, expected, diagnostics, what);
-    good = good && number;
-    if (number) values[axis] = *number;
-  };
-  if (node.is_sequence() && node.items.size() == axes.size()) {
-    for (std::size_t i = 0; i < axes.size(); ++i) take(i, node.items[i]);
-  } else if (node.is_sequence()) {
-    diagnostics.error(node.mark, "size",
-                      fmt::format("expected {} values ({}), got {}", axes.size(),
-                                  fmt::join(axes, ", "), node.items.size()));
-    return std::nullopt;
-  } else if (node.is_map()) {
-    const int errors_before = diagnostics.error_count();
-    if (node.entries.empty()) {
-      diagnostics.error(
-          node.mark, "empty-value",
-          fmt::format("expected a value for at least one of {}", fmt::join(axes, ", ")));
-    }
-    check_keys(node, axes, diagnostics);
-    good = diagnostics.error_count() == errors_before;
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (const YamlNode* const value = node.find(axes[i])) take(i, *value);
-    }
-  } else {
-    const std::optional<double> number = read_quantity(node, expected, diagnostics, what);
-    if (!number) return std::nullopt;
-    values.assign(axes.size(), *number);
-  }
-  return good ? std::optional(values) : std::nullopt;
-}
-
-std::optional<std::array<double, 3>> read_vector3(const YamlNode& node, Dimension expected,
-                                                  Diagnostics& diagnostics, std::string_view what) {
-  const auto values = read_vector(node, expected, {"x", "y", "z"}, diagnostics, 0.0, what);
-  if (!values) return std::nullopt;
-  return std::array<double, 3>{(*values)[0], (*values)[1], (*values)[2]};
 }
 
 }  // namespace footfall::core

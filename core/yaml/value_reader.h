@@ -48,6 +48,8 @@ void check_keys(const YamlNode& map, const std::vector<std::string>& known,
 // Requires documentation text: a scalar. An unquoted number, `true` or `false` is refused, because
 // it is more likely the value of another key.
 bool check_doc(const YamlNode& node, Diagnostics& diagnostics);
+// Warns about a text that YAML's comment cuts: `log: step #{n}`.
+void warn_cut(const YamlNode& text, Diagnostics& diagnostics);
 // Whether the map has a misspelt form of this key; then the error about that key is enough.
 bool has_nearly(const YamlNode& map, std::string_view key);
 // The value under a required key (id "missing-key" at the map, unless has_nearly()).

@@ -16,7 +16,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/text/whole_file.h"
 #include "core/yaml/errors.h"
+#include "core/yaml/flow_traps.h"
 #include "core/yaml/text_check.h"
 
 namespace footfall::core {
@@ -54,7 +56,8 @@ Size size_of(const YamlNode& node) {
 // Builds the tree of one document.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(int file, Diagnostics& diagnostics) : file_(file), diagnostics_(diagnostics) {}
+  TreeBuilder(int file, std::string_view text, Diagnostics& diagnostics)
+      : file_(file), text_(text), diagnostics_(diagnostics) {}
 
   YamlNode take_root() { return std::move(root_); }
   // Approximate end of the last scalar: with escapes and folds the source is longer than the value.
@@ -90,6 +93,7 @@ class TreeBuilder : public YAML::EventHandler {
     node.mark = place(mark);
     node.quoted = tag != "?";
     last_end_ = static_cast<std::size_t>(mark.pos) + value.size() + (node.quoted ? 2 : 0);
+    node.cut = !node.quoted && is_cut(text_, static_cast<std::size_t>(mark.pos), value);
     if (value.find('\0') != std::string::npos) {
       diagnostics_.error(node.mark, "bad-text", "a control character (0x00)");
     }
@@ -115,7 +119,10 @@ class TreeBuilder : public YAML::EventHandler {
                        YAML::EmitterStyle::value) override {
     begin(YamlNode::Kind::sequence, mark, tag, anchor);
   }
-  void OnSequenceEnd() override { end(); }
+  void OnSequenceEnd() override {
+    warn_of_comma();
+    end();
+  }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
     begin(YamlNode::Kind::map, mark, tag, anchor);
@@ -166,7 +173,9 @@ class TreeBuilder : public YAML::EventHandler {
   void begin(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag,
              YAML::anchor_t anchor) {
     const Mark at = place(mark);
-    if (expects_key()) fail(at, "key-kind", "expected a key, got a list or map");
+    if (expects_key()) {
+      fail(at, "key-kind", "expected a key, got a list or map" + comment_hint(text_, at.line));
+    }
     if (tag != "?" && !tag.empty()) refuse_tag(at, tag);
     check_depth(at, static_cast<int>(open_.size()) + 1);
     Frame frame;
@@ -174,6 +183,28 @@ class TreeBuilder : public YAML::EventHandler {
     frame.node.mark = at;
     frame.anchor = anchor;
     open_.push_back(std::move(frame));
+  }
+
+  // `[100,5, 200]` may be meant as two values or as three.
+  void warn_of_comma() {
+    const YamlNode* item = split_item(open_.back().node);
+    if (item == nullptr) return;
+    const std::string& after = (item + 1)->scalar;
+    diagnostics_.warning(item->mark, "list-comma",
+                         fmt::format("'{0},{1}' is two values: {0}.{1} has a decimal point, not a "
+                                     "comma; if two are meant, a blank belongs after the comma",
+                                     item->scalar, after));
+  }
+
+  // `{value: 3,5 cm}` has a key `5 cm`; true if that was reported.
+  bool refuse_comma(const Frame& frame, const YamlNode& node) {
+    if (!node.is_null() || frame.key.key_quoted || frame.node.entries.empty()) return false;
+    const YamlEntry& before = frame.node.entries.back();
+    const std::string meant = split_quantity(before, frame.key.key);
+    if (meant.empty()) return false;
+    diagnostics_.error(before.value.mark, "decimal-comma",
+                       fmt::format("a decimal point, not a comma: '{}'", meant));
+    return true;
   }
 
   void end() {
@@ -200,7 +231,7 @@ class TreeBuilder : public YAML::EventHandler {
     } else {
       Frame& frame = open_.back();
       frame.has_key = false;
-      if (frame.drop_value) return;
+      if (frame.drop_value || refuse_comma(frame, node)) return;
       frame.key.value = std::move(node);
       frame.node.entries.push_back(std::move(frame.key));
     }
@@ -225,6 +256,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   int file_;
+  std::string_view text_;
   Diagnostics& diagnostics_;
   std::vector<Frame> open_;
   std::unordered_map<YAML::anchor_t, std::unique_ptr<Anchored>> anchors_;
@@ -280,6 +312,7 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
     diagnostics.error(whole, "too-large", "larger than 4 MB");
     return {};
   }
+  make_line_ends_plain(text);
   if (!check_text(text, file, diagnostics)) return {};
   // yaml-cpp silently reads an unclosed quote as text up to the end of the file; but it refuses an
   // end-of-document marker inside quotes, so that one is appended.
@@ -287,7 +320,7 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
   const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
   const int errors_before = diagnostics.error_count();
   std::istringstream stream{text + "...\n"};
-  TreeBuilder builder(file, diagnostics);
+  TreeBuilder builder(file, text, diagnostics);
   try {
     YAML::Parser parser(stream);
     if (parser.HandleNextDocument(builder)) {
@@ -303,14 +336,18 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
   } catch (const YAML::Exception& error) {
     if (!error.mark.is_null() && error.mark.line >= lines) {
       const bool in_quotes = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
+      const Mark mark =
+          in_quotes ? quote_after(text, builder.last_end(), file) : builder.innermost(whole);
       diagnostics.error(
-          in_quotes ? quote_after(text, builder.last_end(), file) : builder.innermost(whole),
-          in_quotes ? "open-quote" : "yaml",
-          in_quotes ? "a quote that is never closed" : "YAML: " + yaml_error_text(error.msg));
+          mark, in_quotes ? "open-quote" : "yaml",
+          in_quotes ? "a quote that is never closed"
+                    : "YAML: " + yaml_error_text(error.msg) + comment_hint(text, mark.line));
     } else {
       const Mark mark =
           error.mark.is_null() ? whole : Mark{file, error.mark.line + 1, error.mark.column + 1};
-      diagnostics.error(mark, "yaml", "YAML: " + yaml_error_text(error.msg));
+      const Mark open = builder.innermost(mark);  // what a comment has left open
+      diagnostics.error(mark, "yaml",
+                        "YAML: " + yaml_error_text(error.msg) + comment_hint(text, open.line));
     }
     return {};
   }

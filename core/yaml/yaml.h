@@ -22,6 +22,7 @@ struct YamlNode {
   Kind kind = Kind::null;
   std::string scalar;              // text of a scalar
   bool quoted = false;             // written with quotes (or as a block scalar)
+  bool cut = false;                // a comment behind it looks like more of its text: `step #{n}`
   Mark mark;                       // start of the node
   std::vector<YamlNode> items;     // of a sequence
   std::vector<YamlEntry> entries;  // of a map, in file order
@@ -53,17 +54,22 @@ struct YamlChange {
   std::string path;  // dotted path of the value
   YamlNode old;      // value in the base, with its position
   Mark mark;         // position of the change
+  YamlNode now{};    // the new value, of a change that replaces
 };
 using YamlHistory = std::vector<YamlChange>;  // the innermost base's changes first
 
+struct YamlLayers;
+
 // `base: OTHER.yaml` inheritance (relative to the file): maps merge by key in the base's order, new
 // keys last; everything else is replaced as a whole; `NAME: off` removes; `KEY+:` appends to a
-// list. Cycles and missing bases are errors. Equals load_yaml_file + resolve. Replaced values are
-// added to `history` if it is given. A base is searched beside the file that names it, then as NAME
+// list (with `KEY: off` beside it, it begins a new one). Cycles and missing bases are errors.
+// Equals load_yaml_file + resolve. Replaced values are added to `history` if it is given, the files
+// as written to `layers` (layers.h). A base is searched beside the file that names it, then as NAME
 // or NAME.yaml in the folders `library`.
 YamlNode load_yaml_with_base(const std::string& path, Diagnostics& diagnostics,
                              YamlHistory* history = nullptr,
-                             const std::vector<std::string>& library = {});
+                             const std::vector<std::string>& library = {},
+                             YamlLayers* layers = nullptr);
 // load_yaml_with_base() as if the changes were already written.
 YamlNode load_changed_yaml_with_base(const std::string& path,
                                      const std::vector<FileChange>& changes,
@@ -72,6 +78,7 @@ YamlNode load_changed_yaml_with_base(const std::string& path,
 // load_yaml_with_base() for text; `base:` is relative to the folder of `name`.
 YamlNode load_yaml_text_with_base(std::string_view text, const std::string& name,
                                   Diagnostics& diagnostics, YamlHistory* history = nullptr,
-                                  const std::vector<std::string>& library = {});
+                                  const std::vector<std::string>& library = {},
+                                  YamlLayers* layers = nullptr);
 
 }  // namespace footfall::core

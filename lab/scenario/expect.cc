@@ -161,6 +161,7 @@ void read_expectation(ScenarioContext& context, const YamlNode& node) {
     expectation.text = node.scalar;
     expectation.expression = compile_condition(context, node, &statistics);
     require_room(context, node, expectation, statistics);
+    warn_no_value(context, expectation, node.mark);
     context.scenario.expectations.push_back(std::move(expectation));
     return;
   }
@@ -188,6 +189,7 @@ void read_expectation(ScenarioContext& context, const YamlNode& node) {
     }
   }
   read_times(context, node, expectation);
+  if (const YamlNode* that = node.find("that")) warn_no_value(context, expectation, that->mark);
   require_room(context, node, expectation, statistics);
   context.scenario.expectations.push_back(std::move(expectation));
 }

@@ -13,6 +13,7 @@
 #include "behaviors/loader.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/text/search_folders.h"
+#include "core/yaml/layers.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"
 #include "model/mjcf.h"
@@ -266,11 +267,12 @@ bool is_scenario_file(const std::string& path) {
   return root.is_map() && !root.entries.empty() && root.entries.front().key == "scenario";
 }
 
-ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,
-                                  core::Diagnostics& diagnostics) {
+namespace {
+
+ScenarioDescription load_tree(const YamlNode& root, const std::string& path,
+                              const ScenarioOptions& options, core::Diagnostics& diagnostics) {
   ScenarioDescription scenario;
   scenario.path = path;
-  const YamlNode root = core::load_yaml_with_base(path, diagnostics);
   if (!core::check_kind(root, "scenario", 1, diagnostics)) return scenario;
   core::check_keys(root, kScenarioKeys, diagnostics);
   ScenarioContext context{scenario, diagnostics, nullptr, {}, {}};
@@ -283,6 +285,16 @@ ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions
   if (const YamlNode* golden = root.find("golden")) load_golden(context, *golden);
   for (int k = 0; k < diagnostics.file_count(); ++k) scenario.files.push_back(diagnostics.file(k));
   return scenario;
+}
+
+}  // namespace
+
+ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,
+                                  core::Diagnostics& diagnostics) {
+  return core::load_over_base(path, true, diagnostics,
+                              [&](const YamlNode& root, core::Diagnostics& problems) {
+                                return load_tree(root, path, options, problems);
+                              });
 }
 
 }  // namespace footfall::lab

@@ -11,6 +11,7 @@
 #include "core/capacities.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/glob.h"
+#include "core/yaml/layers.h"
 #include "core/yaml/value_reader.h"
 #include "model/robot/description.h"
 #include "model/robot/fault_rules.h"
@@ -35,8 +36,7 @@ class RobotLoader {
     set_default_reactions();
   }
 
-  RobotDescription load() {
-    const YamlNode root = core::load_yaml_with_base(robot_.path, diagnostics_);
+  RobotDescription load(const YamlNode& root) {
     if (!core::check_kind(root, "robot", 1, diagnostics_)) return std::move(robot_);
     core::check_keys(root, kRobotKeys, diagnostics_);
     read_head(root);
@@ -371,7 +371,10 @@ class RobotLoader {
 }  // namespace
 
 RobotDescription load_robot(const std::string& path, Diagnostics& diagnostics) {
-  return RobotLoader(path, diagnostics).load();
+  return core::load_over_base(path, false, diagnostics,
+                              [&](const YamlNode& root, Diagnostics& problems) {
+                                return RobotLoader(path, problems).load(root);
+                              });
 }
 
 }  // namespace footfall::model

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/yaml/layers.h"
 #include "core/yaml/value_reader.h"
 #include "sim/world/keys.h"
 
@@ -29,8 +30,7 @@ class WorldLoader {
     world_.path = path;
   }
 
-  WorldDescription load() {
-    const YamlNode root = core::load_yaml_with_base(world_.path, diagnostics_);
+  WorldDescription load(const YamlNode& root) {
     if (!core::check_kind(root, "world", 1, diagnostics_)) return std::move(world_);
     core::check_keys(root, kWorldKeys, diagnostics_);
     read_head(root);
@@ -297,7 +297,10 @@ class WorldLoader {
 }  // namespace
 
 WorldDescription load_world(const std::string& path, Diagnostics& diagnostics) {
-  return WorldLoader(path, diagnostics).load();
+  return core::load_over_base(path, false, diagnostics,
+                              [&](const YamlNode& root, Diagnostics& problems) {
+                                return WorldLoader(path, problems).load(root);
+                              });
 }
 
 void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/diagnostics/did_you_mean.h"
+#include "core/diagnostics/quantity_hint.h"
 #include "core/index.h"
 #include "core/text/printable.h"
 #include "core/yaml/glob.h"
@@ -267,9 +268,15 @@ std::vector<footfall_lcm::change_t> read_changes(const TuneModel& model,
                                                  const std::vector<std::string>& texts,
                                                  std::vector<std::string>& problems) {
   std::vector<footfall_lcm::change_t> changes;
-  for (const std::string& text : texts) {
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    bool rest = false;
+    const std::size_t equals = texts[k].find('=');
+    const bool setting = equals != std::string::npos && equals > 0;
+    const std::string hint = setting ? "" : core::split_argument_hint(texts, k, rest);
+    if (rest) continue;
     std::string problem;
-    changes.push_back(read_change(model, text, problem));
+    changes.push_back(read_change(model, texts[k], problem));
+    if (!problem.empty() && !hint.empty()) problem += ": " + hint;
     if (!problem.empty()) problems.push_back(std::move(problem));
   }
   return changes;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/diagnostics/quantity_hint.h"
+#include "core/text/look_alike.h"
 #include "core/units/quantity_text.h"
 
 namespace footfall::apps {
@@ -106,10 +108,17 @@ std::string exact_values(std::span<const double> values, const DisplayUnit& unit
 ReadValues read_values(std::string_view text, core::Dimension dimension, int count) {
   ReadValues read;
   text = trimmed(text);
+  // For one value `0,15s` would be two.
+  if (count == 1 && core::has_decimal_comma(text)) {
+    read.problem = fmt::format("expected {}, got '{}'{}", core::dimension_name(dimension), text,
+                               core::quantity_hint(text, dimension));
+    return read;
+  }
   for (const std::string& item : items_of(text, read.problem)) {
     const auto quantity = core::parse_quantity(item);
     if (!quantity || !(quantity->bare || quantity->dimension == dimension)) {
-      read.problem = fmt::format("expected {}, got '{}'", core::dimension_name(dimension), item);
+      read.problem = fmt::format("expected {}, got '{}'{}{}", core::dimension_name(dimension), item,
+                                 core::quantity_hint(item, dimension), core::look_alike_hint(item));
       return read;
     }
     read.values.push_back(quantity->value);

@@ -92,6 +92,7 @@ void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope
 void load_log(LoadContext& context, const core::YamlNode& node, const ValueScope& scope) {
   const auto text = core::read_text(node, context.diagnostics, "a text to log");
   if (!text) return;
+  core::warn_cut(node, context.diagnostics);
   LogText log;
   log.pieces.emplace_back();
   for (std::size_t k = 0; k < text->size(); ++k) {

@@ -39,8 +39,12 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
   if (on == nullptr && when == nullptr && after == nullptr) {
     context.error(node.mark, "missing-key", "a transition needs at least one of on, when, after");
   }
-  if (to == nullptr && node.find("do") == nullptr) {
-    context.error(node.mark, "missing-key", "a transition needs `to` or `do`");
+  // With `on` alone it absorbs the event: outer states do not get it. Without an event nothing
+  // would ever be absorbed.
+  if (on == nullptr && to == nullptr && node.find("do") == nullptr) {
+    context.error(node.mark, "missing-key",
+                  "a transition without `on` needs `to` or `do`; only one with `on` may absorb an "
+                  "event and do nothing");
   }
   TransitionInfo transition;
   transition.mark = node.mark;

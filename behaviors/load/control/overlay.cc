@@ -212,8 +212,8 @@ const core::YamlNode* find_stack(LoadContext& context, const core::YamlNode& nam
   }
   if (!core::expect_map(*stack, "a stack", context.diagnostics)) return nullptr;
   context.used_stacks.push_back(name.scalar);
-  context.substituted.push_back(
-      substitute(*stack, context.sources[static_cast<std::size_t>(state)]->arguments));
+  context.substituted.push_back(substitute(
+      *stack, context.sources[static_cast<std::size_t>(state)]->arguments, context.behavior.robot));
   const core::YamlNode& own = context.substituted.back();
   core::check_keys(own, kStackKeys, context.diagnostics);
   check_resolved(context, own);

@@ -1,6 +1,7 @@
 // Converts command-line options to the tree of a sweep file; see loader.h.
 #include <fmt/format.h>
 
+#include "core/diagnostics/quantity_hint.h"
 #include "lab/sweep/plan/loader.h"
 #include "lab/sweep/plan/yaml_build.h"
 
@@ -26,13 +27,20 @@ class OptionReader {
   }
 
   // Splits NAME=REST; an empty name after an error.
-  std::pair<std::string, std::string> split(const std::string& text, const char* option) {
+  std::pair<std::string, std::string> split(const std::vector<std::string>& texts,
+                                            std::size_t index, const char* option) {
+    const std::string& text = texts[index];
     const std::size_t equals = text.find('=');
     if (equals != std::string::npos && equals > 0) {
       return {trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1))};
     }
-    diagnostics_.error({diagnostics_.add_file(option), 0, 0}, "expected",
-                       fmt::format("expected NAME=VALUES, got '{}'", text));
+    bool rest = false;
+    const std::string hint = core::split_argument_hint(texts, index, rest);
+    if (!rest) {
+      diagnostics_.error(
+          {diagnostics_.add_file(option), 0, 0}, "expected",
+          fmt::format("expected NAME=VALUES, got '{}'{}{}", text, hint.empty() ? "" : ": ", hint));
+    }
     return {};
   }
 
@@ -118,8 +126,8 @@ YamlNode sweep_tree(const SweepArguments& a, bool scenario, Diagnostics& diagnos
                            const std::string& option, auto read) {
     if (texts.empty()) return;
     YamlNode map = yaml_map(mark_of(option.c_str()));
-    for (const std::string& each : texts) {
-      const auto [name, rest] = reader.split(each, option.c_str());
+    for (std::size_t k = 0; k < texts.size(); ++k) {
+      const auto [name, rest] = reader.split(texts, k, option.c_str());
       if (name.empty()) continue;
       YamlNode value = read(rest, option + " " + name);
       if (!value.is_null()) yaml_add(map, name, std::move(value));

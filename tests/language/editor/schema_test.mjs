@@ -82,7 +82,7 @@ const refused = [
   state({tasks: {height: {reference: {trajectory: 'cosine', overr: '1 s'}}}}),
   state({transitions: {on: 'go'}}),
   state({transitions: [{to: 'a'}]}),
-  state({transitions: [{on: 'go'}]}),
+  state({transitions: [{after: '1 s'}]}),
   state({on_entry: [{}]}),
   state({contact_transition: {releases: 'foot', over: '3 m'}}),
   {behavior: 1},
@@ -104,6 +104,8 @@ const accepted = [
   state({tasks: {height: {reference: {trajectory: '$shape', over: '1 s'}}}}),
   state({tasks: {hold: {type: 'joint_posture', joints: ['*knee'], gains: {kp: {'*knee': '4 1/s^2'}}}}}),
   {base: 'other.yaml', parameters: {a: {live: false}}, machine: {'transitions+': [{on: 'go', to: 'a'}]}},
+  {behavior: 1, machine: {states: {a: {transitions: [{on: 'go'}]}}}},
+  {base: 'other.yaml', machine: {states: {a: {invoke: 'off', 'invoke+': []}}}},
   {behavior: 1, machine: {}, parameters: {a: '3 kg m^2/s^2', b: ['1 N', '2 kN'], c: {value: '440 Nm/rad'}}},
 ];
 const validate = validator('behavior');

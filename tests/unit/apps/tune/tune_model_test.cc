@@ -103,6 +103,15 @@ TEST(TuneModel, SaysEveryProblemOfChanges) {
                                     "gains.single.swing.kp[9]: it has 3 values"));
 }
 
+TEST(TuneModel, TellsADecimalCommaAndAnArgumentThatTheShellHasSplit) {
+  std::vector<std::string> problems;
+  read_changes(small_model(), {"lift_time=150", "ms", "lift_time=0,15s"}, problems);
+  EXPECT_THAT(problems,
+              ElementsAre("expected NAME=VALUE, got 'ms': quote it: \"lift_time=150 ms\"",
+                          "lift_time: expected a time, got '0,15s': a decimal point, not a comma: "
+                          "'0.15s'"));
+}
+
 TEST(TuneModel, AnswersAreNotedWithWhoAskedAndWhatCameOfIt) {
   TuneModel model = small_model();
   footfall_lcm::answer_t answer{};

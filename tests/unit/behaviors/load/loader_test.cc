@@ -83,7 +83,7 @@ TEST(Loader, AnotherKindOrANewerVersionIsRefusedInOneLine) {
 TEST(Loader, AnUnknownRobotIsOneError) {
   EXPECT_NE(problems("behavior: 1\nrobot: hune\nmachine: {}\n")
                 .find("b.yaml:2:8: error: unknown robot 'hune': no such file, and no "
-                      "robots/hune/robot.yaml in "),
+                      "robots/hune/robot.yaml beside this file, above it, or in "),
             std::string::npos);
 }
 TEST(Loader, UnknownKeysComeWithASuggestion) {
@@ -147,9 +147,30 @@ TEST(Loader, AfterNeedsToAndToNeedsAfter) {
             "b.yaml:3:20: error: `to` needs `after` beside it\n");
 }
 TEST(Loader, ATransitionNeedsACauseAndAnEffect) {
-  EXPECT_EQ(problems(chart("  states: {a: {transitions: [{to: b}, {on: x}]}, b: {}}")),
+  EXPECT_EQ(problems(chart("  states: {a: {transitions: [{to: b}, {after: 1 s}]}, b: {}}")),
             "b.yaml:3:30: error: a transition needs at least one of on, when, after\n"
-            "b.yaml:3:39: error: a transition needs `to` or `do`\n");
+            "b.yaml:3:39: error: a transition without `on` needs `to` or `do`; only one with `on` "
+            "may absorb an event and do nothing\n");
+}
+TEST(Loader, ATransitionWithAnEventAloneAbsorbsIt) {
+  const std::string text =
+      "behavior: 1\nevents: {x: ask, y: go}\nmachine:\n  transitions: [{on: x, to: c}]\n"
+      "  states: {a: {transitions: [{on: x}, {on: y, to: b}]}, b: {}, c: {}}\n";
+  EXPECT_EQ(trace_of(*load(text), behaviors::trace_events("x,y,x")),
+            (std::vector<std::string>{"a", "a", "b", "c"}));
+}
+TEST(Loader, AnInstanceAppendsToAListOfItsTemplate) {
+  const std::string text = R"(behavior: 1
+parameters: {n: 0}
+templates: {wait: {on_entry: [{set: {n: "= $n + 1"}}]}}
+events: {x: ask}
+machine:
+  states:
+    a: {use: wait, on_entry+: [{set: {n: "= $n + 1"}}], transitions: [{on: x, when: $n == 2, to: b}]}
+    b: {}
+)";
+  EXPECT_EQ(trace_of(*load(text), behaviors::trace_events("x")),
+            (std::vector<std::string>{"a", "b"}));
 }
 TEST(Loader, AnEventNobodyRaisesIsAWarning) {
   EXPECT_EQ(problems("behavior: 1\nevents: {start: go}\nmachine:\n"

@@ -50,6 +50,15 @@ TEST(Trace, DelaysOfAScriptPassOnAVirtualClockAndPrintNothing) {
             "{\"event\":null,\"active\":[\"a\"]}\n{\"event\":\"x\",\"active\":[\"a\"]}\n"
             "{\"event\":\"x\",\"active\":[\"b\"]}\n");
 }
+TEST(Trace, ADelayThatEndsAScriptPrintsWhatItLedTo) {
+  core::Diagnostics diagnostics;
+  const auto steps = behaviors::load_trace_script_text(
+      "[{event: x}, {after: 50 ms}, {after: 50 ms}]", "s.yaml", diagnostics);
+  ASSERT_TRUE(steps) << diagnostics.to_string();
+  EXPECT_EQ(traced(chart("  states: {a: {after: 100 ms, to: b}, b: {}}"), *steps),
+            "{\"event\":null,\"active\":[\"a\"]}\n{\"event\":\"x\",\"active\":[\"a\"]}\n"
+            "{\"event\":null,\"active\":[\"b\"]}\n");
+}
 TEST(Trace, AScriptWithAnErrorSaysWhere) {
   core::Diagnostics diagnostics;
   EXPECT_FALSE(

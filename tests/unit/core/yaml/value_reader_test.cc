@@ -37,7 +37,7 @@ TEST(ValueReaderTest, AQuantityHasTheDimensionThatItsKeyKnows) {
   EXPECT_EQ(document.problems(),
             "f.yaml:3:8: error: expected a time, got '100 N'\n"
             "f.yaml:3:8: error: expected an angle, got '100 N'\n"
-            "f.yaml:4:6: error: expected a time, got '16 mss'\n"
+            "f.yaml:4:6: error: expected a time, got '16 mss' (did you mean '16 ms'?)\n"
             "f.yaml:5:7: error: expected a time, got a list\n"
             "f.yaml:6:1: error: expected a time, got nothing\n");
 }
