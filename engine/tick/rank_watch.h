@@ -1,5 +1,6 @@
 // Notices in a tick that a task level has lost rank: it has less than the same control law has in
-// the robot's nominal posture, at load.
+// the robot's nominal posture, at load. Rows of weight 0 are no part of their level: each that is
+// missing may cost a rank, and none is lost by it.
 #pragma once
 
 #include <vector>
@@ -7,6 +8,7 @@
 #include "behaviors/compiled/behavior.h"
 #include "engine/tick/faults.h"
 #include "model/control_model.h"
+#include "tasks/active_set.h"
 #include "tasks/whole_body_controller.h"
 
 namespace footfall::engine {
@@ -20,7 +22,19 @@ class RankWatch {
   FaultFindings check(int control, const tasks::ControllerResult& result) const noexcept;
 
  private:
-  std::vector<std::vector<int>> expected_;  // by control and task: rank of the task's level
+  // Of the level of each task.
+  struct Expected {
+    int rows = 0;
+    int rank = 0;
+  };
+  using Law = std::vector<Expected>;
+  struct Expectation {
+    Law at_load;  // weights of the first tick
+    Law all;      // every row in force
+  };
+  static Law read(int tasks, const tasks::ControllerResult& result);
+
+  std::vector<Expectation> expected_;  // by control
 };
 
 }  // namespace footfall::engine

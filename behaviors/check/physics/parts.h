@@ -6,8 +6,8 @@
 
 #include "behaviors/check/physics/findings.h"
 #include "behaviors/check/physics/law.h"
-#include "behaviors/check/physics/values.h"
 #include "behaviors/compiled/behavior.h"
+#include "behaviors/compiled/static_values.h"
 #include "model/control_model.h"
 #include "model/state.h"
 

@@ -1,6 +1,7 @@
 // Internal forces, references, planners and torque steps as the checks judge them. Oracles: statics
 // of two feet by hand, the pendulum's step-to-step map as a matrix. Equations: [Kim16] eqs.
 // (7)-(10) with E10, eqs. (19), (21) with E1.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -183,6 +184,41 @@ TEST(PhysicsPlanner, TheCorrectedSignIsClean) {
   EXPECT_LT(largest_eigenvalue(0.4, 0.185, 0.935, 0.335), 1.0);
   EXPECT_EQ(physics(walking("0.4")), "");
   EXPECT_EQ(physics(walking("0")), "");  // steps drift, they do not grow
+}
+
+// kappa 0.9, reversal 500 ms, 540 ms a step: a conjugate pair, which the real parts hide.
+TEST(PhysicsPlanner, AComplexPairIsJudgedByItsModulus) {
+  std::string text = walking("0.9");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + 1)) {
+      text.replace(at, from.size(), to);
+    }
+  };
+  replace("185 ms", "500 ms");
+  replace("295 ms", "500 ms");
+  const std::string said = physics(text);
+  EXPECT_THAT(said, HasSubstr("error: planner 'foot' diverges: an eigenvalue of its step-to-step "
+                              "map in x is "));
+  EXPECT_THAT(said, HasSubstr(fmt::format("i, of modulus {:.3f} (kappa 0.9, reversal 500 ms",
+                                          largest_eigenvalue(0.9, 0.5, 0.935, 0.54))));
+  EXPECT_THAT(said, HasSubstr("its modulus must not exceed 1; here kappa must be below 0."));
+}
+
+// The longer of two strides, each at a height of its own, is not always the less stable one.
+TEST(PhysicsPlanner, EveryStrideIsJudgedAtItsOwnHeight) {
+  const std::string low =
+      R"(    low:
+      tasks: {height: {type: com_position, axes: [z], reference: 0.5 m, gains: {kp: 1}}}
+      invoke: [{planner: foot, with: {stance: right_foot, swing: left_foot, switch_in: "= 320 ms - t"}}]
+      after: 320 ms
+      to: ready
+)";
+  std::string text = walking("0.9");
+  text.replace(text.find("185 ms"), 6, "350 ms");
+  EXPECT_LT(largest_eigenvalue(0.9, 0.35, 0.935, 0.335), 1.0);
+  EXPECT_GT(largest_eigenvalue(0.9, 0.35, 0.5, 0.32), 1.0);
+  EXPECT_EQ(physics(text), "");
+  EXPECT_THAT(physics(text + low), HasSubstr("error: planner 'foot' diverges"));
 }
 
 TEST(PhysicsPlanner, ANegativeKappaNeedsARangeThatAllowsIt) {
