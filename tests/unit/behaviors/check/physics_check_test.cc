@@ -77,6 +77,25 @@ TEST(PhysicsForces, FrictionIsTheRobotFiles) {
   EXPECT_THAT(physics(squeezing("20 N"), slippery), HasSubstr("at most 0.1 x "));
 }
 
+// At 98 N on each foot, 32 N need a friction of 0.327.
+TEST(PhysicsForces, TheWorldsFrictionCountsWhereItIsLess) {
+  const auto judge = [](std::optional<double> friction) {
+    core::Diagnostics diagnostics, findings;
+    const auto behavior = behaviors::load_behavior_text(squeezing("32 N"), "b.yaml",
+                                                        options_for_tests(), diagnostics);
+    for (int f = 0; f < diagnostics.file_count(); ++f) findings.add_file(diagnostics.file(f));
+    behaviors::check_physics(*behavior, findings, {.friction = friction});
+    return findings.to_string();
+  };
+  EXPECT_EQ(judge(std::nullopt), "");
+  EXPECT_EQ(judge(0.9), "");
+  EXPECT_EQ(judge(2.0), "");
+  EXPECT_THAT(judge(0.3),
+              HasSubstr("error: internal force 'tension' of 32 N at each foot leaves the "
+                        "friction cone: standing still, "));
+  EXPECT_THAT(judge(0.3), HasSubstr("at most 0.3 x 98 N = 29 N (friction of the world)"));
+}
+
 TEST(PhysicsContacts, SurfacesAreRefusedByName) {
   const auto flat = with_contacts(testing::TempDir(), "{site: right_foot, type: surface}",
                                   "{site: left_foot, type: fixed}");
@@ -111,6 +130,33 @@ TEST(PhysicsReach, WhatStraightLegsReachIsNotRefused) {
   EXPECT_EQ(physics(height_of("\"= entry + 6 cm\"")), "");
   EXPECT_EQ(physics(height_of("{trajectory: minimum_jerk, to: \"= entry - 3 cm\", over: 1 s}")),
             "");
+}
+
+// Hume's base must stay above 60 % of 0.84 m; its CoM is some centimetres above the base. Oracle:
+// the base of a crouch whose CoM is there.
+TEST(PhysicsReach, AHeightAtWhichItCountsAsFallenIsRefused) {
+  const auto at_height = [](const std::string& reference) {
+    return standing("[right_foot, left_foot]",
+                    "      height: {type: com_position, axes: [z], reference: " + reference +
+                        ", gains: {kp: 100, kd: 20}}\n" + attitude("[yaw, pitch, roll]") + rest());
+  };
+  const std::string text = at_height("0.45 m");
+  EXPECT_THAT(physics(text),
+              StartsWith(place_of(text, "0.45 m") +
+                         "error: task 'height' asks for a centre of mass at a height "
+                         "of 0.45 m: the base is then 0."));
+  EXPECT_THAT(physics(text),
+              HasSubstr("m above the ground at most, and below 0.504 m (limits.height "
+                        "of the robot) it counts as fallen"));
+  EXPECT_EQ(physics(at_height("0.65 m")), "");
+  EXPECT_THAT(physics(at_height("{trajectory: minimum_jerk, to: 0.4 m, over: 1 s}")),
+              HasSubstr("it counts as fallen"));
+  const std::string hips =
+      "      hips: {type: point_position, point: hip_center, axes: [z], reference: 0.5 m, gains: "
+      "{kp: 100, kd: 20}}\n";
+  EXPECT_THAT(
+      physics(standing("[right_foot, left_foot]", hips + attitude("[yaw, pitch, roll]") + rest())),
+      HasSubstr("the base is then 0.5 m above the ground at most"));
 }
 
 TEST(PhysicsReach, JointsHaveLimitsAndTheBodyMayNotTiltAsIfFallen) {
