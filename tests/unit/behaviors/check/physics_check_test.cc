@@ -329,6 +329,49 @@ TEST(PhysicsSteps, LoadingCoversWhatComesAfterIt) {
   EXPECT_THAT(physics(two_stances(at_once)), HasSubstr("that loads in the state left"));
 }
 
+// A region beside the stride changes the law while a foot is being loaded: nothing of the feet
+// changes by that. The stride's own transitions are judged as ever.
+std::string beside_a_nod(const std::string& load, const std::string& after_load) {
+  return "behavior: 1\nrobot: hume\nstacks:\n"
+         "  dual:\n    contacts: [right_foot, left_foot]\n    tasks:\n" +
+         dual_tasks() + "  single:\n    contacts: [right_foot]\n    tasks:\n" + single_tasks() +
+         std::string(
+             "machine:\n  states:\n    all:\n      type: parallel\n      states:\n"
+             "        stride:\n          states:\n"
+             "            both: {stack: dual, after: 1 s, to: one}\n"
+             "            one: {stack: single, contact_transition: {releases: left_foot, over: 24 "
+             "ms}, after: 1 s, to: load}\n") +
+         "            load: {stack: single, " + load + "after: 24 ms, to: " + after_load +
+         "}\n        nod:\n          states:\n"
+         "            down: {tasks: {knee: {type: joint_posture, joints: [left_knee], priority: 3, "
+         "reference: 0.1, gains: {kp: 1}}}, after: 70 ms, to: up}\n"
+         "            up: {tasks: {knee: {type: joint_posture, joints: [left_knee], priority: 3, "
+         "reference: 0, gains: {kp: 1}}}, after: 70 ms, to: down}\n";
+}
+
+TEST(PhysicsSteps, OnlyWhereTheOwnerOfTheTransitionIsLeftIsItsLawReached) {
+  const std::string load = "contact_transition: {loads: left_foot, over: 24 ms, toward: dual}, ";
+  EXPECT_EQ(physics(beside_a_nod(load, "both")), "");
+  const std::string without = physics(beside_a_nod("", "both"));
+  EXPECT_THAT(without, HasSubstr("that loads in the state left"));
+  EXPECT_THAT(without, HasSubstr("when 'all.stride.load' is left"));
+  EXPECT_THAT(without, testing::Not(HasSubstr("nod")));
+  EXPECT_THAT(physics(beside_a_nod(load, "one")), testing::Not(HasSubstr("nod")));
+}
+
+// Nor do transitions between children of the state that declares it.
+TEST(PhysicsSteps, ChildrenOfTheStateThatLoadsMayChange) {
+  const std::string loads =
+      "    one: {stack: single, contact_transition: {releases: left_foot, over: 24 ms}, after: 1 "
+      "s, "
+      "to: load}\n"
+      "    load:\n      stack: single\n      contact_transition: {loads: left_foot, over: 24 ms, "
+      "toward: dual}\n      after: 24 ms\n      to: both\n      states:\n"
+      "        early: {tasks: {attitude: {reference: 0.1}}, after: 10 ms, to: late}\n"
+      "        late: {tasks: {attitude: {reference: 0}}}\n";
+  EXPECT_EQ(physics(two_stances(loads)), "");
+}
+
 TEST(PhysicsCheck, ABehaviorWithoutARobotHasNoPhysics) {
   EXPECT_EQ(physics("behavior: 1\nmachine: {states: {a: {doc: here}}}\n"), "");
 }
