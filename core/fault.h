@@ -25,6 +25,8 @@ enum class Fault : std::uint8_t {
   event_overflow,     // an event queue is full
   rank_loss,          // a task level lost rank that it has at load
   no_estimate,        // the estimator cannot give a state
+  swing_contact,      // a foot that should swing bears load for more than half of its phase
+  condition,          // a task level is worse conditioned than `limits.condition`
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -37,7 +39,7 @@ constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
       "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
       "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
-      "execution", "event.overflow", "rank.loss",    "no_estimate"};
+      "execution", "event.overflow", "rank.loss",    "no_estimate", "swing.contact", "condition"};
   return names[static_cast<std::size_t>(fault)];
 }
 

@@ -9,7 +9,8 @@
 
 namespace footfall::engine {
 
-RankWatch::RankWatch(const behaviors::Behavior& behavior, model::ControlModel& model) {
+RankWatch::RankWatch(const behaviors::Behavior& behavior, model::ControlModel& model)
+    : condition_limit_(behavior.robot.condition_limit) {
   model::State nominal;
   nominal.p_WB = {0.0, 0.0, behavior.robot.standing_height};
   for (std::size_t j = 0; j < behavior.robot.joints.size(); ++j) {
@@ -29,6 +30,9 @@ RankWatch::RankWatch(const behaviors::Behavior& behavior, model::ControlModel& m
     for (int a = 0; a < set.axis_count; ++a) set.axes[at(a)].weight = 1.0;
     controller.compute(*control, 0, nullptr, unused.data());
     expectation.all = read(set.task_count, controller.result());
+    for (int t = 0; t < set.task_count; ++t) {
+      expectation.instances.push_back(set.tasks[at(t)].instance);
+    }
   }
 }
 
@@ -54,6 +58,11 @@ FaultFindings RankWatch::check(int control, const tasks::ControllerResult& resul
     const int least =
         as_at_load ? expectation.at_load[t].rank : all.rank - (all.rows - result.tasks[t].rows);
     if (result.tasks[t].rank < least) findings.add(core::Fault::rank_loss);
+    const double condition = result.tasks[t].condition;
+    if (condition > condition_limit_) {
+      findings.add(core::Fault::condition,
+                   {expectation.instances[t], condition, condition - condition_limit_});
+    }
   }
   return findings;
 }

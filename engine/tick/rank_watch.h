@@ -1,6 +1,7 @@
 // Notices in a tick that a task level has lost rank: it has less than the same control law has in
 // the robot's nominal posture, at load. Rows of weight 0 are no part of their level: each that is
-// missing may cost a rank, and none is lost by it.
+// missing may cost a rank, and none is lost by it. And that a level is worse conditioned than the
+// robot's limit: then a small error of the model is a large one of the task.
 #pragma once
 
 #include <vector>
@@ -29,11 +30,13 @@ class RankWatch {
   };
   using Law = std::vector<Expected>;
   struct Expectation {
+    std::vector<int> instances;  // by task
     Law at_load;  // weights of the first tick
     Law all;      // every row in force
   };
   static Law read(int tasks, const tasks::ControllerResult& result);
 
+  double condition_limit_;
   std::vector<Expectation> expected_;  // by control
 };
 
