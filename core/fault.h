@@ -37,8 +37,8 @@ enum class Reaction : std::uint8_t { keep_going, safe_state, safe_stop };
 // Dotted name, e.g. "torque.limit".
 constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
-      "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
-      "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
+      "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",   "swing.long",
+      "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun",  "planner.late",
       "execution", "event.overflow", "rank.loss",    "no_estimate", "swing.contact", "condition"};
   return names[static_cast<std::size_t>(fault)];
 }

@@ -31,8 +31,8 @@ class RankWatch {
   using Law = std::vector<Expected>;
   struct Expectation {
     std::vector<int> instances;  // by task
-    Law at_load;  // weights of the first tick
-    Law all;      // every row in force
+    Law at_load;                 // weights of the first tick
+    Law all;                     // every row in force
   };
   static Law read(int tasks, const tasks::ControllerResult& result);
 

@@ -24,8 +24,7 @@ bool holds(const behaviors::Behavior& behavior, const behaviors::ControlSpec& co
 
 }  // namespace
 
-FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors,
-                                bool stepping) noexcept {
+FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool stepping) noexcept {
   FaultFindings findings;
   const behaviors::ControlSpec& spec = behavior_.controls[at(control)];
   const model::RobotDescription& robot = behavior_.robot;

@@ -16,9 +16,9 @@ class SwingWatch {
  public:
   explicit SwingWatch(const behaviors::Behavior& behavior) : behavior_(behavior) {}
 
-  // control: of this tick, index into Behavior::controls. stepping: the behavior has marked a step. A phase is judged when it
-  // ends, and before that as soon as the foot has borne load for half of `limits.swing`. A foot that
-  // no other one replaces (contacts: []) does not swing.
+  // control: of this tick, index into Behavior::controls. stepping: the behavior has marked a step.
+  // A phase is judged when it ends, and before that as soon as the foot has borne load for half of
+  // `limits.swing`. A foot that no other one replaces (contacts: []) does not swing.
   FaultFindings check(int control, const hal::Sensors& sensors, bool stepping) noexcept;
 
   // Goes on from the watch of another loop on the same robot.

@@ -138,8 +138,8 @@ EndCause explain_end(const ControlLoop& loop, std::span<const int> states) {
 
 std::string place_text(const ControlLoop& loop, Fault fault, const engine::FaultPlace& place) {
   if (place.joint < 0) return {};
-  const bool coarse = fault == Fault::torque_limit || fault == Fault::torque_step ||
-                      fault == Fault::condition;
+  const bool coarse =
+      fault == Fault::torque_limit || fault == Fault::torque_step || fault == Fault::condition;
   const std::string_view unit = unit_of(fault);
   return fmt::format("{} {:.{}f}{}{}", place_name(loop, fault, place), place.value, coarse ? 1 : 3,
                      unit.empty() ? "" : " ", unit);

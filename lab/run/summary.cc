@@ -42,8 +42,8 @@ Json worst_json(const RunResult& result) {
   Json out = Json::object();
   for (const WorstFault& worst : result.worst) {
     const std::string unit(worst.unit);
-    out[std::string(core::fault_name(worst.fault))] = {{"joint", worst.joint},
-                                                       {unit.empty() ? "value" : unit, worst.value}};
+    out[std::string(core::fault_name(worst.fault))] = {
+        {"joint", worst.joint}, {unit.empty() ? "value" : unit, worst.value}};
   }
   return out;
 }
@@ -88,7 +88,8 @@ std::string torque_text(const RunFigures& f) {
 // The behavior counts its own marks, the run what the feet do.
 std::string no_steps_text(std::int64_t marked) {
   return fmt::format(
-      "  NO STEPS     the behavior marked {}, but no foot left the ground for {:.0f} ms, rose {:.0f} cm "
+      "  NO STEPS     the behavior marked {}, but no foot left the ground for {:.0f} ms, rose "
+      "{:.0f} cm "
       "and then carried the robot alone\n",
       marked, StepCounter::kMinFlight * 1e3, StepCounter::kMinRise * 1e2);
 }

@@ -82,6 +82,7 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
   }
   check_references(context);
   check_gains(context);
+  check_force_feedback(context);
   check_planners(context);
   check_torque_steps(context);
   findings.report(diagnostics);

@@ -36,6 +36,8 @@ void check_ranks(PhysicsContext& context, const ControlSpec& control, core::Mark
 void check_internal_forces(PhysicsContext& context, const ControlSpec& control);
 // References against joint limits, legs' reach and the robot's tilt limit (reach.cc).
 void check_references(PhysicsContext& context);
+// Feedback of internal forces beyond what the loop bears (force_feedback.cc).
+void check_force_feedback(PhysicsContext& context);
 // Gains that are unstable at the robot's rate (gain_stability.cc).
 void check_gains(PhysicsContext& context);
 // Step-to-step maps of the planners (planner_stability.cc).

@@ -219,6 +219,40 @@ TEST(PhysicsGains, AGainFromAParameterIsJudgedAtTheEndsOfItsRange) {
   EXPECT_THAT(physics(with("2000 1/s")), HasSubstr("error: task 'height' is unstable in 'z': kd"));
 }
 
+std::string fed_back(const std::string& feedback, const std::string& parameters = "") {
+  return standing(
+      "[right_foot, left_foot]", dual_tasks(),
+      "    internal: {t: {between: [right_foot, left_foot], reference: 20 N, feedback: " +
+          feedback + "}}\n" + parameters);
+}
+
+// The measured force is the last one commanded, F' = F_ref + K (F_ref - F): stepped by hand.
+TEST(PhysicsFeedback, AForceThatIsFedBackWithOneOrMoreNeverSettles) {
+  for (const double feedback : {0.0, 0.5, 0.99, 1.0, 1.5}) {
+    double force = 19.0;
+    for (int k = 0; k < 5000; ++k) force = 20.0 + feedback * (20.0 - force);
+    const bool settles = std::abs(force - 20.0) < 0.5;
+    const std::string said = physics(fed_back(fmt::format("{}", feedback)));
+    EXPECT_EQ(said.empty(), settles) << feedback << ' ' << said;
+  }
+  const std::string text = fed_back("1.5");
+  EXPECT_THAT(
+      physics(text),
+      StartsWith(place_of(text, "20 N") +
+                 "error: internal force 't' is unstable with feedback 1.5: the measured torque "
+                 "is that of a command 0.667 ms before, so that a deviation is multiplied by "
+                 "-1.5 every 0.667 ms; below 1 it dies out"));
+}
+
+TEST(PhysicsFeedback, TheEndsOfALiveRangeAreWarnedAbout) {
+  const std::string live = "parameters: {k: {value: 0.5, range: [0, 2], live: true}}\n";
+  EXPECT_THAT(physics(fed_back("$k", live)),
+              HasSubstr("warning: internal force 't' is unstable with feedback 2 at the end of the "
+                        "range of 'k'"));
+  EXPECT_EQ(physics(fed_back("$k", "parameters: {k: {value: 0.5, range: [0, 0.9], live: true}}\n")),
+            "");
+}
+
 // The world may be late, or step the physics differently.
 TEST(PhysicsGains, TheWorldsDelayCounts) {
   const auto judge = [](const std::string& text, const behaviors::PhysicsWorld& world) {

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <optional>
 
 #include "engine/log/writer.h"
@@ -33,7 +33,7 @@ constexpr std::int64_t kCause = 40;  // the tick in which something goes wrong
 constexpr int kLate = 3;             // limits.overruns of the robot
 // limits.swing, ms at 1500 Hz, half of which passes between the ticks kCause and kCause + 1.
 constexpr double kLoadedSwing = (2 * kCause + 1) / 1.5;
-constexpr int kSwing = 15;           // ticks of its limits.swing where that is tried
+constexpr int kSwing = 15;  // ticks of its limits.swing where that is tried
 
 // Level 1 has rank 3 in the nominal posture; with straight legs its height cannot be moved.
 // Where a swing is tried the left foot is let go of, and stays on the ground.
@@ -69,7 +69,7 @@ machine:
 struct Provocation {
   std::function<void(hal::Sensors&)> spoil = nullptr;  // in each tick from `from` on ...
   std::int64_t from = kCause;
-  int spoiled = 1000;                                  // ... as many of them
+  int spoiled = 1000;                                                 // ... as many of them
   std::function<void(engine::ControlLoop&, Meddler&)> act = nullptr;  // before kCause
   int ticks = 1;               // in how many ticks `act` is repeated
   int delay = 0;               // ticks from the cause until it is found
@@ -149,9 +149,8 @@ Provocation provocation(Fault fault) {
     case Fault::no_estimate:
       return {.spoil = [](hal::Sensors& s) { s.has_truth = false; }};
     case Fault::swing_contact:  // since the first tick: beyond half of limits.swing in kCause
-      return {.spoil = [](hal::Sensors& s) { s.contact[1] = true; },
-              .from = 0,
-              .after_machine = true};
+      return {
+          .spoil = [](hal::Sensors& s) { s.contact[1] = true; }, .from = 0, .after_machine = true};
     case Fault::condition:
       return {.spoil = bend_slightly, .spoiled = 1, .after_machine = true};
     case Fault::count:
