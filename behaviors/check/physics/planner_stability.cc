@@ -176,7 +176,8 @@ class PlannerCheck {
                        std::abs(value));
   }
 
-  // Which of the three conditions of foot_planner.h is broken, and what would meet it.
+  // Which of the three conditions of behaviors/planners/foot_planner.h is broken, and what would
+  // meet it.
   static std::string remedy(const FootPlannerSpec& spec, const Timing& timing, std::size_t axis) {
     if (spec.kappa[axis] < 0.0) {
       return "; kappa is positive here, the printed equation has its sign wrong";

@@ -40,6 +40,7 @@ class ReachCheck {
         const TaskSpec& task = context_.behavior.tasks[static_cast<std::size_t>(k)];
         for (int a = task.axes.first; a < task.axes.end(); ++a) {
           judge(control, task, context_.behavior.axes[static_cast<std::size_t>(a)]);
+          judge_waypoints(control, task, a - task.axes.first);
         }
       }
     }
@@ -47,6 +48,18 @@ class ReachCheck {
   }
 
  private:
+  // Each point that names the axis, as its reference.
+  void judge_waypoints(const ControlSpec& control, const TaskSpec& task, int k) {
+    AxisSpec axis = context_.behavior.axes[static_cast<std::size_t>(task.axes.first + k)];
+    const Range& points = task.reference.waypoints;
+    for (int p = points.first; p < points.end(); ++p) {
+      axis.value =
+          context_.behavior.waypoints[static_cast<std::size_t>(p)].to[static_cast<std::size_t>(k)];
+      axis.value_mark = axis.mark;
+      judge(control, task, axis);
+    }
+  }
+
   void judge(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
     if (axis.value < 0) return;
     const tasks::TaskTypeInfo& type = tasks::info(task.type);

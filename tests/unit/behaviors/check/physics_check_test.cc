@@ -151,6 +151,9 @@ TEST(PhysicsReach, AHeightAtWhichItCountsAsFallenIsRefused) {
   EXPECT_EQ(physics(at_height("0.65 m")), "");
   EXPECT_THAT(physics(at_height("{trajectory: minimum_jerk, to: 0.4 m, over: 1 s}")),
               HasSubstr("it counts as fallen"));
+  EXPECT_THAT(physics(at_height("{trajectory: waypoints, over: 2 s, points: [{at: 1 s, to: 0.4 m}, "
+                                "{at: 2 s, to: 0.8 m}]}")),
+              HasSubstr("it counts as fallen"));
   const std::string hips =
       "      hips: {type: point_position, point: hip_center, axes: [z], reference: 0.5 m, gains: "
       "{kp: 100, kd: 20}}\n";

@@ -180,7 +180,7 @@ TEST(FootPlanner, OfAllSettingsExactlyThoseThatGrowHaveAnEigenvalueBeyondOne) {
   EXPECT_GT(complex_pairs, 1000);
 }
 
-// The three conditions in words: foot_planner.h.
+// The three conditions in words: behaviors/planners/foot_planner.h.
 TEST(FootPlanner, StabilityIsThreeInequalities) {
   for (const double kappa : {-0.2, 0.1, 0.5, 0.9}) {
     for (const double reversal : {0.15, 0.2, 0.3, 0.5}) {
