@@ -26,6 +26,8 @@ enum class Fault : std::uint8_t {
   rank_loss,          // a task level lost rank that it has at load
   no_estimate,        // the estimator cannot give a state
   script_stuck,       // a script does not come back from a call
+  swing_contact,      // a foot that should swing bears load for more than half of its phase
+  condition,          // a task level is worse conditioned than `limits.condition`
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -36,9 +38,10 @@ enum class Reaction : std::uint8_t { keep_going, safe_state, safe_stop };
 // Dotted name, e.g. "torque.limit".
 constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
-      "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
-      "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
-      "execution", "event.overflow", "rank.loss",    "no_estimate", "script.stuck"};
+      "fall",         "non_finite",   "torque.limit",  "torque.step",    "joint.limit",
+      "swing.long",   "simulator",    "sensor.stale",  "imu.stale",      "mocap.stale",
+      "tick.overrun", "planner.late", "execution",     "event.overflow", "rank.loss",
+      "no_estimate",  "script.stuck", "swing.contact", "condition"};
   return names[static_cast<std::size_t>(fault)];
 }
 

@@ -211,10 +211,10 @@ void WholeBodyController::report(const ActiveControl& control) noexcept {
   for (int t = 0; t < control.primary.task_count; ++t) {
     const TaskCommand& task = control.primary.tasks[at(t)];
     if (row >= primary_.problem().level_end[at(level)]) ++level;
-    const int rows = primary_.problem().level_end[at(level)] -
-                     (level > 0 ? primary_.problem().level_end[at(level - 1)] : 0);
-    result_.tasks[at(t)] = {a.level_rank[at(level)], a.level_condition[at(level)],
-                            rows > 0 ? double(a.level_rank[at(level)]) / rows : 1.0};
+    const int rows = a.level_rows[at(level)];
+    const int rank = a.level_rank[at(level)];
+    result_.tasks[at(t)] = {rows, rank, a.level_condition[at(level)],
+                            rows > 0 ? double(rank) / rows : 1.0};
     for (int i = 0; i < task.axis_count; ++i, ++row) {
       result_.achieved[at(task.first_axis + i)] = a.achieved[at(row)];
     }

@@ -29,6 +29,7 @@ struct ControllerSizes {
 };
 
 struct TaskReport {
+  int rows = 0;            // of the task's level: those of a weight above 0
   int rank = 0;            // of the task's level
   double condition = 1.0;  // of the task's level
   double authority = 1.0;  // rank of the level over its rows

@@ -54,11 +54,11 @@ void check_world(const std::string& path, core::Diagnostics& diagnostics) {
 }
 
 // With a robot: checks what the behavior demands of its physics.
-void check_loaded(const std::unique_ptr<behaviors::Behavior>& behavior,
-                  core::Diagnostics& diagnostics) {
-  if (!behavior || !behavior->has_robot) return;
+void check_loaded(const behaviors::Behavior* behavior, core::Diagnostics& diagnostics,
+                  const behaviors::PhysicsWorld& world = {}) {
+  if (behavior == nullptr || !behavior->has_robot) return;
   try {
-    behaviors::check_physics(*behavior, diagnostics);
+    behaviors::check_physics(*behavior, diagnostics, world);
   } catch (const std::exception& error) {
     diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
   }
@@ -71,19 +71,21 @@ behaviors::LoadOptions load_options() {
 }
 
 void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
-  check_loaded(behaviors::load_behavior(path, load_options(), diagnostics), diagnostics);
+  check_loaded(behaviors::load_behavior(path, load_options(), diagnostics).get(), diagnostics);
 }
 
 // Checks the world that a scenario names: a file beside it, or one found by name.
-void check_world_of(const lab::ScenarioDescription& scenario, core::Diagnostics& diagnostics) {
-  if (scenario.world.empty()) return;
+behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
+                                       core::Diagnostics& diagnostics) {
+  if (scenario.world.empty()) return {};
   const std::filesystem::path folder = std::filesystem::path(scenario.path).parent_path();
   const std::string beside = sim::find_world_file((folder / scenario.world).string(), {});
   const std::vector<std::string> folders = core::search_from(scenario.path, search_path());
   const std::string path = beside.empty() ? sim::find_world_file(scenario.world, folders) : beside;
   if (!path.empty()) {
-    sim::load_world(path, diagnostics);
-  } else if (scenario.world_mark.line > 0) {
+    return physics_world(sim::load_world(path, diagnostics));
+  }
+  if (scenario.world_mark.line > 0) {
     diagnostics.error(scenario.world_mark, "cannot-read",
                       fmt::format("unknown world '{}': no such file here, and no "
                                   "sim/worlds/{}.yaml here, above, or in the search path{}",
@@ -91,10 +93,23 @@ void check_world_of(const lab::ScenarioDescription& scenario, core::Diagnostics&
                                   core::did_you_mean_or_list(
                                       scenario.world, core::names_in(folders, "sim/worlds"))));
   }
+  return {};
 }
 
+// The scenario's behavior, in its world, as `run` checks it.
 void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
-  check_world_of(lab::load_scenario(path, {search_path()}, diagnostics), diagnostics);
+  const lab::ScenarioDescription scenario = lab::load_scenario(path, {search_path()}, diagnostics);
+  const behaviors::PhysicsWorld world = check_world_of(scenario, diagnostics);
+  if (diagnostics.has_errors() || scenario.behavior == nullptr) return;
+  core::Diagnostics found;  // positions refer to the behavior's files
+  for (const std::string& file : scenario.behavior_files) found.add_file(file);
+  check_loaded(scenario.behavior.get(), found, world);
+  for (core::Diagnostic item : found.sorted()) {
+    if (item.mark.file >= 0) item.mark.file = diagnostics.add_file(found.file(item.mark.file));
+    const bool error = item.severity == core::Severity::error;
+    if (error) diagnostics.error(item.mark, item.id, item.text);
+    if (!error) diagnostics.warning(item.mark, item.id, item.text);
+  }
 }
 
 // File kinds by their first key. A file without a kind is checked as a behavior, which reports it.
@@ -112,7 +127,7 @@ void check_file(const std::string& file, const CheckOptions& options,
   if (file == "-") {
     const std::string text = core::read_whole_file(file);
     check_loaded(
-        behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics),
+        behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics).get(),
         diagnostics);
     return;
   }

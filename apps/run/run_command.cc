@@ -140,13 +140,14 @@ int run_behavior(RunOptions options) {
         "--film: error: a film is made from the log with the report: leave out --no-log and "
         "--no-report");
   }
-  auto behavior = load_or_explain(options.behavior, options.robot, options.set, true);
+  const sim::WorldDescription world = load_world(options.world);
+  const behaviors::PhysicsWorld physics = physics_world(world);
+  auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
   if (!behavior->has_robot) {
     throw InputError(behavior->path +
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
-  const sim::WorldDescription world = load_world(options.world);
   Backend backend = make_backend(options, *behavior, world);
   engine::ControlLoop loop(*behavior, *backend.hardware, loop_settings(options, world));
 

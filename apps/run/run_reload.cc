@@ -31,6 +31,7 @@ lab::ReloadSetup reload_setup(const RunOptions& options, hal::Hardware& hardware
   core::Diagnostics ignored;  // reported when they were split before
   setup.load.set = split_settings(options.set, ignored);
   setup.source = log_source(options, world);
+  setup.world = physics_world(world);
   if (!options.no_log) setup.folder = options.log;
   setup.print = [](const core::Diagnostics& diagnostics) {
     clear_line();

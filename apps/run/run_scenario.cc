@@ -30,7 +30,12 @@ void refuse_options(const RunOptions& options) {
   }
 }
 
-lab::ScenarioDescription load_checked(const RunOptions& options) {
+struct CheckedScenario {
+  lab::ScenarioDescription scenario;
+  sim::WorldDescription world;
+};
+
+CheckedScenario load_checked(const RunOptions& options) {
   core::Diagnostics diagnostics;
   const lab::ScenarioOptions how = {search_path(), split_settings(options.set, diagnostics)};
   lab::ScenarioDescription scenario = lab::load_scenario(options.behavior, how, diagnostics);
@@ -39,12 +44,14 @@ lab::ScenarioDescription load_checked(const RunOptions& options) {
   if (!scenario.behavior->has_robot) {
     throw InputError(options.behavior + ": error: its behavior has no `robot:` and cannot be run");
   }
+  sim::WorldDescription world =
+      load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
-  behaviors::check_physics(*scenario.behavior, physics);
+  behaviors::check_physics(*scenario.behavior, physics, physics_world(world));
   print_diagnostics(physics);
   if (physics.has_errors()) throw InputError("");
-  return scenario;
+  return {std::move(scenario), std::move(world)};
 }
 
 lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors) {
@@ -86,12 +93,12 @@ void write_results(const RunOptions& options, const lab::ScenarioDescription& sc
 
 int run_scenario_file(RunOptions options) {
   refuse_options(options);
-  const lab::ScenarioDescription scenario = load_checked(options);
+  const CheckedScenario checked = load_checked(options);
+  const lab::ScenarioDescription& scenario = checked.scenario;
+  const sim::WorldDescription& world = checked.world;
   const bool seed_given = std::ranges::find(options.given, "--seed") != options.given.end();
   if (!seed_given) options.seed = scenario.seeds.front();
   const behaviors::Behavior& behavior = *scenario.behavior;
-  const sim::WorldDescription world =
-      load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
   Backend backend = make_backend(options, behavior, world);
   hal::SensorFaults sensors(*backend.hardware);
   const lab::ScenarioHooks hooks = make_hooks(backend, sensors);

@@ -16,6 +16,7 @@
 #include "core/diagnostics/quantity_hint.h"
 #include "core/process/machine_error.h"
 #include "core/text/search_folders.h"
+#include "sim/world/description.h"
 
 namespace footfall::apps {
 namespace fs = std::filesystem;
@@ -133,10 +134,14 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
   return pairs;
 }
 
+behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world) {
+  return {world.friction, world.physics.steps_per_tick, world.actuators.command_delay};
+}
+
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
                                                      const std::string& robot,
                                                      const std::vector<std::string>& set,
-                                                     bool physics) {
+                                                     const behaviors::PhysicsWorld* world) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
   options.search = search_path();
@@ -146,7 +151,9 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
   if (!diagnostics.has_errors() && behavior_is_there(path, diagnostics)) {
     behavior = behaviors::load_behavior(find_behavior_file(path), options, diagnostics);
   }
-  if (behavior != nullptr && physics) behaviors::check_physics(*behavior, diagnostics);
+  if (behavior != nullptr && world != nullptr) {
+    behaviors::check_physics(*behavior, diagnostics, *world);
+  }
   print_diagnostics(diagnostics);
   return diagnostics.has_errors() ? nullptr : std::move(behavior);
 }

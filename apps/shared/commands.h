@@ -8,12 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/yaml/key_table.h"
 
 namespace CLI {
 class App;
+}
+
+namespace footfall::sim {
+struct WorldDescription;
 }
 
 namespace footfall::apps {
@@ -72,12 +77,14 @@ std::string find_behavior_file(const std::string& name);
 // False, and an error with a suggestion, if there is no such file and none in the library.
 bool behavior_is_there(const std::string& name, core::Diagnostics& diagnostics);
 
-// Loads a behavior, optionally checks its physics, and prints every problem on stderr; nullptr if
-// there were errors.
-std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
-                                                     const std::string& robot,
-                                                     const std::vector<std::string>& set,
-                                                     bool physics = false);
+// Loads a behavior, checks its physics if a world is given, and prints every problem on stderr;
+// nullptr if there were errors.
+std::unique_ptr<behaviors::Behavior> load_or_explain(
+    const std::string& path, const std::string& robot, const std::vector<std::string>& set,
+    const behaviors::PhysicsWorld* world = nullptr);
+
+// What the physics checks take from a world.
+behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world);
 
 // Prints every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is
 // set).

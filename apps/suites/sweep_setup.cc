@@ -16,9 +16,11 @@
 namespace footfall::apps {
 namespace {
 
-void load_and_check_world(const std::string& path, core::Diagnostics& diagnostics) {
+behaviors::PhysicsWorld load_and_check_world(const std::string& path,
+                                             core::Diagnostics& diagnostics) {
   const sim::WorldDescription world = sim::load_world(path, diagnostics);
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+  return physics_world(world);
 }
 
 // Finds a world beside the file that names it, or by name.

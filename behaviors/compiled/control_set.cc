@@ -3,11 +3,13 @@
 
 #include <algorithm>
 
+#include "behaviors/compiled/static_values.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
 
 void fill_control_set(const Behavior& behavior, const ControlSpec& spec, tasks::ControlSet& set) {
+  const StaticValues values(behavior);
   set = {};
   set.contact_count = static_cast<int>(spec.contacts.size());
   std::copy(spec.contacts.begin(), spec.contacts.end(), set.contacts.begin());
@@ -22,7 +24,10 @@ void fill_control_set(const Behavior& behavior, const ControlSpec& spec, tasks::
     command.first_axis = set.axis_count;
     command.axis_count = task.axes.count;
     for (int a = task.axes.first; a < task.axes.end(); ++a) {
-      set.axes[at(set.axis_count++)].axis = behavior.axes[at(a)].axis;
+      const AxisSpec& axis = behavior.axes[at(a)];
+      tasks::AxisCommand& out = set.axes[at(set.axis_count++)];
+      out.axis = axis.axis;
+      out.weight = values.of(axis.weight).value_or(out.weight);
     }
   }
   for (int k = spec.internals.first; k < spec.internals.end(); ++k) {

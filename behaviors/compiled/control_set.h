@@ -1,5 +1,6 @@
 // A control spec as the whole-body controller takes it, at rest: references, gains and internal
-// forces are 0. For questions about a law that is not in force: ranks, torques at rest.
+// forces are 0, weights are those of the first tick. For questions about a law that is not in
+// force: ranks, torques at rest.
 #pragma once
 
 #include "behaviors/compiled/behavior.h"

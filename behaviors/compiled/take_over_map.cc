@@ -218,7 +218,7 @@ void compare_robots(const model::RobotDescription& a, const model::RobotDescript
   if (a.reactions != b.reactions || a.tilt_limit != b.tilt_limit ||
       a.height_limit != b.height_limit || a.torque_step_limit != b.torque_step_limit ||
       a.standing_height != b.standing_height || a.overruns != b.overruns ||
-      a.swing_limit != b.swing_limit) {
+      a.swing_limit != b.swing_limit || a.condition_limit != b.condition_limit) {
     differ("limits or reactions to faults");
   }
 }

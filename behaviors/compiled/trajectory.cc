@@ -65,6 +65,12 @@ Motion sample(const Segment& g, double t) noexcept {
   return sample_polynomial(g.c, s, T);
 }
 
+void shift(Segment& g, double by) noexcept {
+  g.start.pos += by;
+  g.to += by;
+  g.c[0] += by;
+}
+
 // The spline's second derivative is continuous: a tridiagonal system in the inner velocities,
 // solved by forward elimination. `acc` temporarily holds the factors.
 void fit_knots(std::span<Knot> k) noexcept {

@@ -46,6 +46,8 @@ struct Segment {
 Segment make_segment(Shape shape, const Motion& start, double to, double end_velocity,
                      double duration) noexcept;
 Motion sample(const Segment& segment, double t) noexcept;
+// The same motion, expressed from an origin that is `by` lower.
+void shift(Segment& segment, double by) noexcept;
 
 // Position and time of a point to pass.
 struct Knot {

@@ -72,7 +72,8 @@ constexpr KeySpec kTaskRows[] = {
     key("priority", integer(1, 1000),
         "its level: a larger number acts only in the null space of smaller ones")
         .otherwise("1"),
-    key("weight", computed(by_axis(quantity(kNone))), "relative to other tasks of its level")
+    key("weight", computed(by_axis(quantity(kNone))),
+        "relative to other tasks of its level; 0: the axis is no part of it")
         .otherwise("1"),
     key("reference", kReferenceValue, map_of(kTrajectoryKeys),
         "desired value: one value an axis (number, expression, signal, `planner.NAME.target`), "

@@ -168,8 +168,18 @@ void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec&
   }
 }
 
+// By how much a position grows because the task's origin is another than before: `frame` or the
+// stance contacts may have changed.
+double ControlMerge::origin_moved(const tasks::ControlSet& set, const TaskSpec& spec, int axis,
+                                  const Kept& kept) const noexcept {
+  const TaskSpec& before = *kept.bank->tasks[at(kept.task)].spec;
+  if (spec.frame != tasks::Frame::stance && before.frame == spec.frame) return 0.0;
+  return measured(spec, set, axis) - measured(before, *kept.set, axis);
+}
+
 // The reference continues if its source and its state's entry are unchanged, whatever else of the
-// task has changed; otherwise it starts from the last reference, or from the measurement.
+// task has changed; otherwise it starts from the last reference, or from the measurement. In either
+// case it stays where it is in the world.
 void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
                              const tasks::TaskCommand& command, const TaskSpec& spec, int k,
                              const Kept& kept) noexcept {
@@ -183,23 +193,23 @@ void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
   } else {
     const TaskState& before = kept.bank->tasks[at(kept.task)];
     const AxisState& old = kept.bank->axes[at(kept.slot)];
+    const double moved = origin_moved(set, spec, axis, kept);
     if (before.spec->reference.source == spec.reference.source &&
         before.owner_serial == statechart_.entry_serial(spec.reference.owner)) {
       state = old;
-      bank.entry[at(slot)] = kept.bank->entry[at(kept.slot)];
+      bank.entry[at(slot)] = kept.bank->entry[at(kept.slot)] + moved;
+      state.motion.pos += moved;
+      shift(state.segment, moved);
       state.begins = false;
       state.first_knot = bank.knot_count;
       std::copy_n(kept.bank->knots.begin() + old.first_knot, old.knot_count,
                   bank.knots.begin() + state.first_knot);
+      for (int i = 0; i < old.knot_count; ++i) bank.knots[at(state.first_knot + i)].pos += moved;
       bank.knot_count += state.knot_count;
       return;
     }
     state.motion = old.motion;
-    // The same position relative to another origin: `frame` or the stance contacts may have
-    // changed.
-    if (spec.frame == tasks::Frame::stance || before.spec->frame != spec.frame) {
-      state.motion.pos += measured(spec, set, axis) - measured(*before.spec, *kept.set, axis);
-    }
+    state.motion.pos += moved;
   }
   bank.entry[at(slot)] = state.motion.pos;
 }

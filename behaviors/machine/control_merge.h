@@ -87,6 +87,8 @@ class ControlMerge {
   void fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index) noexcept;
   void fill_axis(Bank& bank, const tasks::ControlSet& set, const tasks::TaskCommand& command,
                  const TaskSpec& spec, int k, const Kept& kept) noexcept;
+  double origin_moved(const tasks::ControlSet& set, const TaskSpec& spec, int axis,
+                      const Kept& kept) const noexcept;
   Kept find_kept(int instance, int axis) const noexcept;
   void advance(Bank& bank, tasks::ControlSet& set) noexcept;
   void advance_task(Bank& bank, tasks::ControlSet& set, int index) noexcept;

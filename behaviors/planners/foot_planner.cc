@@ -85,18 +85,20 @@ FootPlan plan_foot(const FootPlannerSpec& spec, const FootPlannerInput& in) noex
   return plan;
 }
 
-std::array<double, 2> step_eigenvalues(double kappa, double reversal, double step_time,
-                                       double height, double gravity) noexcept {
+std::array<std::complex<double>, 2> step_eigenvalues(double kappa, double reversal,
+                                                     double step_time, double height,
+                                                     double gravity) noexcept {
   const double omega = std::sqrt(gravity / height);
   const double C = std::cosh(omega * step_time);
   const double S = std::sinh(omega * step_time);
   const double coth = 1.0 / std::tanh(omega * reversal);
   const double trace = 1.0 + kappa + (1.0 - kappa) * C - S * coth;
   const double det = -kappa + (1.0 + kappa) * C - S * coth;
-  const double root = std::sqrt(std::max(0.0, 0.25 * trace * trace - det));
-  const double a = 0.5 * trace + root;
-  const double b = 0.5 * trace - root;
-  return std::abs(a) >= std::abs(b) ? std::array<double, 2>{a, b} : std::array<double, 2>{b, a};
+  const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * trace * trace - det));
+  const std::complex<double> a = 0.5 * trace + root;
+  const std::complex<double> b = 0.5 * trace - root;
+  if (std::abs(a) >= std::abs(b)) return {a, b};
+  return {b, a};
 }
 
 }  // namespace footfall::behaviors

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 
 namespace footfall::behaviors {
 
@@ -53,9 +54,11 @@ struct FootPlan {
 
 FootPlan plan_foot(const FootPlannerSpec& spec, const FootPlannerInput& input) noexcept;
 
-// Eigenvalues' product form of the step-to-step map A' of one axis: {larger, smaller} by magnitude;
-// real for every kappa here. Source: tr A' and det A' with E1 of docs/notation.md.
-std::array<double, 2> step_eigenvalues(double kappa, double reversal, double step_time,
-                                       double height, double gravity) noexcept;
+// Eigenvalues of the step-to-step map A' of one axis, the one of larger modulus first; a conjugate
+// pair where tr² < 4 det. Source: tr A' and det A' with E1 of docs/notation.md. Steps do not grow
+// if no modulus exceeds 1: kappa >= 0, t' >= T/2 and (1 + kappa) tanh(ωT/2) tanh(ωt') <= 1.
+std::array<std::complex<double>, 2> step_eigenvalues(double kappa, double reversal,
+                                                     double step_time, double height,
+                                                     double gravity) noexcept;
 
 }  // namespace footfall::behaviors

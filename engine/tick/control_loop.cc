@@ -20,6 +20,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       controller_(model_, behavior.robot.torque_limits(), behaviors::controller_sizes(behavior),
                   period_),
       ranks_(behavior, model_),
+      swings_(behavior),
       safety_(behavior.robot),
       faults_(behavior),
       writer_(behavior, signals_),
@@ -69,6 +70,7 @@ void ControlLoop::compute() noexcept {
   faults_.take(outside_.post(tick_, *machine_, signals_, time()), *machine_);
   controller_.compute(machine_->control(), tick_, sensors_.tau.data(), commands_.tau.data());
   faults_.take(ranks_.check(machine_->control_spec(), controller_.result()), *machine_);
+  faults_.take(swings_.check(machine_->control_spec(), sensors_, machine_->stepping()), *machine_);
   faults_.take(safety_.filter(commands_, outside_.limit_steps()), *machine_);
   writer_.write_control(*machine_, controller_.result(), commands_, safety_.torque_step(),
                         faults_.counters());

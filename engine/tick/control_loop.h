@@ -17,6 +17,7 @@
 #include "engine/tick/safety.h"
 #include "engine/tick/settings.h"
 #include "engine/tick/signals.h"
+#include "engine/tick/swing_watch.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "tasks/whole_body_controller.h"
@@ -117,6 +118,7 @@ class ControlLoop {
   std::unique_ptr<Estimator> estimator_;
   tasks::WholeBodyController controller_;
   RankWatch ranks_;
+  SwingWatch swings_;
   SafetyFilter safety_;
   FaultMonitor faults_;
   SignalWriter writer_;

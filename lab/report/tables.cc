@@ -87,11 +87,12 @@ std::string worst_place(const json& summary, const std::string& fault) {
   const json::json_pointer place = json::json_pointer("/worst_fault") / fault;
   if (!summary.contains(place) || !summary[place].is_object()) return {};
   const json& worst = summary[place];
-  for (const char* unit : {"Nm", "rad", "s"}) {
+  for (const char* unit : {"Nm", "rad", "s", "value"}) {
     const auto value = worst.find(unit);
     if (value == worst.end() || !value->is_number()) continue;
-    return fmt::format(" (worst {} {:.3g} {})", text_at(worst, "joint"), value->get<double>(),
-                       unit);
+    const bool plain = std::string_view(unit) == "value";
+    return fmt::format(" (worst {} {:.3g}{}{})", text_at(worst, "joint"), value->get<double>(),
+                       plain ? "" : " ", plain ? "" : unit);
   }
   return {};
 }

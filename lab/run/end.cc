@@ -20,16 +20,27 @@ std::string state_paths(const ControlLoop& loop, std::span<const int> states) {
 }
 
 const char* unit_of(Fault fault) {
-  if (fault == Fault::swing_too_long) return "s";
-  return fault == Fault::joint_limit ? "rad" : "Nm";
+  switch (fault) {
+    case Fault::swing_too_long:
+    case Fault::swing_contact:
+      return "s";
+    case Fault::joint_limit:
+      return "rad";
+    case Fault::condition:
+      return "";
+    default:
+      return "Nm";
+  }
 }
 
-// The joint or contact where a fault is; `place` has one.
+// The joint, contact or task where a fault is; `place` has one.
 const std::string& place_name(const ControlLoop& loop, Fault fault,
                               const engine::FaultPlace& place) {
   const model::RobotDescription& robot = loop.behavior().robot;
   const auto index = static_cast<std::size_t>(place.joint);
-  return fault == Fault::swing_too_long ? robot.contacts[index].name : robot.joints[index].name;
+  if (fault == Fault::condition) return loop.behavior().task_instances[index].name;
+  const bool of_contact = fault == Fault::swing_too_long || fault == Fault::swing_contact;
+  return of_contact ? robot.contacts[index].name : robot.joints[index].name;
 }
 
 // A fall by its first criterion that holds, with the words for it.
@@ -127,9 +138,11 @@ EndCause explain_end(const ControlLoop& loop, std::span<const int> states) {
 
 std::string place_text(const ControlLoop& loop, Fault fault, const engine::FaultPlace& place) {
   if (place.joint < 0) return {};
-  const int digits = fault == Fault::torque_limit || fault == Fault::torque_step ? 1 : 3;
-  return fmt::format("{} {:.{}f} {}", place_name(loop, fault, place), place.value, digits,
-                     unit_of(fault));
+  const bool coarse =
+      fault == Fault::torque_limit || fault == Fault::torque_step || fault == Fault::condition;
+  const std::string_view unit = unit_of(fault);
+  return fmt::format("{} {:.{}f}{}{}", place_name(loop, fault, place), place.value, coarse ? 1 : 3,
+                     unit.empty() ? "" : " ", unit);
 }
 
 std::vector<WorstFault> worst_faults(const ControlLoop& loop) {

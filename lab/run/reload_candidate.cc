@@ -23,12 +23,13 @@ constexpr int kMostAttempts = 10;
 // As `footfall check` does.
 std::shared_ptr<const behaviors::Behavior> load_checked(const std::string& path,
                                                         const behaviors::LoadOptions& options,
+                                                        const behaviors::PhysicsWorld& world,
                                                         core::Diagnostics& diagnostics) {
   std::shared_ptr<const behaviors::Behavior> behavior =
       behaviors::load_behavior(path, options, diagnostics);
   if (behavior == nullptr || !behavior->has_robot) return behavior;
   try {
-    behaviors::check_physics(*behavior, diagnostics);
+    behaviors::check_physics(*behavior, diagnostics, world);
   } catch (const std::exception& error) {
     diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
   }
@@ -43,11 +44,12 @@ std::string text_of(const std::string& path) {
 // A file that is saved again while it is read is read again: half of it is nobody's mistake.
 std::shared_ptr<const behaviors::Behavior> load_settled(const std::string& path,
                                                         const behaviors::LoadOptions& options,
+                                                        const behaviors::PhysicsWorld& world,
                                                         core::Diagnostics& diagnostics) {
   for (int attempt = 1;; ++attempt) {
     core::Diagnostics found;
     const std::string before = text_of(path);
-    auto behavior = load_checked(path, options, found);
+    auto behavior = load_checked(path, options, world, found);
     if (attempt < kMostAttempts && text_of(path) != before) continue;
     diagnostics = std::move(found);
     return behavior;
@@ -140,7 +142,7 @@ ReloadCandidate prepare_reload(const std::string& path,
   ReloadCandidate candidate;
   candidate.path = path;
   core::Diagnostics diagnostics;
-  candidate.behavior = load_settled(path, setup.load, diagnostics);
+  candidate.behavior = load_settled(path, setup.load, setup.world, diagnostics);
   for (int k = 0; k < diagnostics.file_count(); ++k) candidate.files.push_back(diagnostics.file(k));
   if (setup.print && !diagnostics.all().empty()) setup.print(diagnostics);
   if (diagnostics.has_errors() || candidate.behavior == nullptr) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "behaviors/check/physics/check.h"
 #include "behaviors/compiled/take_over_map.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/diagnostics.h"
@@ -27,6 +28,7 @@ namespace footfall::lab {
 struct ReloadSetup {
   hal::Hardware* hardware = nullptr;
   behaviors::LoadOptions load;       // as the first behavior was loaded
+  behaviors::PhysicsWorld world;     // that it is checked for
   LogSource source;                  // likewise; its settings are those of every control loop
   std::string folder;                // of the run's log; empty: none is written
   engine::LivePort* live = nullptr;  // of the run; nullptr: none

@@ -227,6 +227,8 @@ RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
   }
   result.worst = worst_faults(last);
   result.faults = last.faults();
+  const int marked = last.behavior().layout.steps;
+  if (marked >= 0) result.marked_steps = std::llround(last.signals().values()[marked]);
   result.tick_time = executive.tick_time();
   if (spec.allocations) result.allocations = spec.allocations();
   result.reloads = executive.exchanges();

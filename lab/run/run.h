@@ -82,6 +82,7 @@ struct RunResult {
   std::optional<EndCause> cause;  // of a fall or a stop by a fault
   RunFigures figures;
   core::FaultCounters faults;
+  std::int64_t marked_steps = 0;  // `mark: step` of the behavior; figures.steps are the feet's
   std::vector<WorstFault> worst;  // of the joints' faults, in the order of core::Fault
   core::TimingHistogram tick_time;
   std::int64_t allocations = -1;  // within ticks; -1: not counted

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "lab/run/step_counter.h"
+
 namespace footfall::lab {
 namespace {
 
@@ -39,8 +41,9 @@ Json internal_json(const RunFigures& figures) {
 Json worst_json(const RunResult& result) {
   Json out = Json::object();
   for (const WorstFault& worst : result.worst) {
-    out[std::string(core::fault_name(worst.fault))] = {{"joint", worst.joint},
-                                                       {worst.unit, worst.value}};
+    const std::string unit(worst.unit);
+    out[std::string(core::fault_name(worst.fault))] = {
+        {"joint", worst.joint}, {unit.empty() ? "value" : unit, worst.value}};
   }
   return out;
 }
@@ -82,6 +85,15 @@ std::string torque_text(const RunFigures& f) {
   return text + "\n";
 }
 
+// The behavior counts its own marks, the run what the feet do.
+std::string no_steps_text(std::int64_t marked) {
+  return fmt::format(
+      "  NO STEPS     the behavior marked {}, but no foot left the ground for {:.0f} ms, rose "
+      "{:.0f} cm "
+      "and then carried the robot alone\n",
+      marked, StepCounter::kMinFlight * 1e3, StepCounter::kMinRise * 1e2);
+}
+
 std::string faults_text(const RunResult& result) {
   std::string text;
   for (int i = 0; i < core::kFaultCount; ++i) {
@@ -91,7 +103,8 @@ std::string faults_text(const RunResult& result) {
                         result.faults.of(fault));
     for (const WorstFault& worst : result.worst) {
       if (worst.fault != fault) continue;
-      text += fmt::format(" (worst {} {:.3g} {})", worst.joint, worst.value, worst.unit);
+      text += fmt::format(" (worst {} {:.3g}{}{})", worst.joint, worst.value,
+                          std::string_view(worst.unit).empty() ? "" : " ", worst.unit);
     }
   }
   return fmt::format("  faults       {}\n", text.empty() ? "none" : text);
@@ -172,6 +185,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["worst_fault"] = worst_json(result);
   const bool let_go = result.end == RunEnd::finished || result.cause.has_value();
   out["end_torque_step_Nm"] = settled && let_go ? Json(f.end_torque_step) : Json();
+  out["marked_steps"] = result.marked_steps;
   out["unused_torque_loops"] = torque_loops_json(id);
   out["max_distance_m"] = f.max_distance;
   out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
@@ -209,6 +223,7 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   text += fmt::format("  end          {} after {:.2f} s, {} step{}\n", run_end_text(result.end),
                       f.time, f.steps, f.steps == 1 ? "" : "s");
   if (result.cause) text += fmt::format("  cause        {}\n", result.cause->text);
+  if (f.steps == 0 && result.marked_steps > 0) text += no_steps_text(result.marked_steps);
   text += motion_text(f);
   if (f.height.count > 0) {
     text += fmt::format("  orientation  roll {:.2f}°  pitch {:.2f}°  yaw {:.2f}° (largest error)\n",

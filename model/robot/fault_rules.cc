@@ -56,6 +56,14 @@ constexpr auto kRules = std::to_array<FaultRule>({
      {}},
     {Fault::no_estimate, "the estimator cannot give a state", Reaction::safe_stop, kBlind},
     {Fault::script_stuck, "a script does not come back from a call", Reaction::safe_stop, {}},
+    {Fault::swing_contact,
+     "a swing foot bears load for more than half of its phase",
+     Reaction::keep_going,
+     {}},
+    {Fault::condition,
+     "a task's level is worse conditioned than `limits.condition`",
+     Reaction::keep_going,
+     {}},
 });
 
 constexpr bool in_order() {
@@ -101,6 +109,7 @@ std::string why_never(const RobotDescription& robot, Fault fault) {
     case Fault::torque_step:
       return robot.torque_step_limit > 0.0 ? "" : "it has no `limits: {torque_step: ...}`";
     case Fault::swing_too_long:
+    case Fault::swing_contact:
       return robot.contacts.empty() ? "it has no `contacts`" : "";
     default:
       return {};

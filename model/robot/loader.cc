@@ -345,6 +345,11 @@ class RobotLoader {
                                               "a time above zero and at most 60 s")
                                .value_or(robot_.swing_limit);
     }
+    if (const YamlNode* const condition = node.find("condition")) {
+      robot_.condition_limit = core::read_bounded(*condition, core::kNone, 1.0, kInfinity,
+                                                  diagnostics_, "a ratio of at least 1")
+                                   .value_or(robot_.condition_limit);
+    }
     read("reload_watch", core::kTime, 60.0, "a time of at most 60 s", robot_.reload_watch);
   }
 

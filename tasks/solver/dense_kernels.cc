@@ -71,13 +71,23 @@ double make_reflector(const Block& x, int first, int last, int c, double* v,
   return norm;
 }
 
-void swap_columns(const Block& x, int rows, int a, int b) noexcept {
+void swap_columns(const Block& x, int rows, int a, int b, int* order, double* norm2) noexcept {
   for (int r = 0; r < rows; ++r) std::swap(x.row(r)[a], x.row(r)[b]);
+  std::swap(order[a], order[b]);
+  std::swap(norm2[a], norm2[b]);
 }
 
-// The column with the largest remaining norm among those that pass the rank rule; -1: none does.
+double heaviest(const LevelRange& level, const double* weight, const int* order) noexcept {
+  double most = 0.0;
+  for (int c = level.col_first; c < level.col_last; ++c) most = std::max(most, weight[order[c]]);
+  return most;
+}
+
+// The column with the largest remaining (weighted) norm among those that pass the rank rule; -1:
+// none does.
 int choose_pivot(const Block& x, int first, const QrRange& range, const RankRule& rule,
-                 const double* norm2, int next, double* __restrict remaining) noexcept {
+                 const int* order, const double* norm2, int next,
+                 double* __restrict remaining) noexcept {
   const int n = range.col_last - next;
   const int rows = range.row_last - first;
   const double* top = x.row(first) + next;
@@ -101,12 +111,14 @@ int choose_pivot(const Block& x, int first, const QrRange& range, const RankRule
   const double tolerance2 = rule.tolerance * rule.tolerance;
   const double floor2 = rule.floor * rule.floor;
   int best = -1;
-  double best_norm = 0.0;
+  double best_norm = -1.0;
   for (int c = 0; c < n; ++c) {
     const double limit = std::max(tolerance2 * norm2[next + c], floor2);
-    if (remaining[c] > limit && remaining[c] > best_norm) {
+    const double size =
+        rule.weight == nullptr ? remaining[c] : rule.weight[order[next + c]] * remaining[c];
+    if (remaining[c] > limit && size > best_norm) {
       best = next + c;
-      best_norm = remaining[c];
+      best_norm = size;
     }
   }
   return best;
@@ -140,13 +152,9 @@ int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* 
   for (; rank < most; ++rank) {
     const int first = range.row_first + rank;
     const int c = range.col_first + rank;
-    const int pivot = choose_pivot(x, first, range, rule, norm2, c, work);
+    const int pivot = choose_pivot(x, first, range, rule, order, norm2, c, work);
     if (pivot < 0) break;
-    if (pivot != c) {
-      swap_columns(x, range.swap_rows, c, pivot);
-      std::swap(order[c], order[pivot]);
-      std::swap(norm2[c], norm2[pivot]);
-    }
+    if (pivot != c) swap_columns(x, range.swap_rows, c, pivot, order, norm2);
     double local_v[1 + 6 + 64];
     double local_beta = 0.0;
     double* v = keep ? keep->v + keep->count * keep->stride : local_v;
@@ -172,7 +180,8 @@ int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule&
   const int row_first = level.row0 + level.done;
   const QrRange range = {row_first,      level.row0 + level.dims, level.col_first,
                          level.col_last, level.col_end,           level.swap_rows};
-  const int k = pivoted_qr(x, range, rule, order, norm2, keep, condition, scratch.work);
+  const RankRule by_weight = {rule.tolerance, rule.floor, weight};
+  const int k = pivoted_qr(x, range, by_weight, order, norm2, keep, condition, scratch.work);
   for (int i = 0; i < m; ++i) {
     const int c = level.col_first + i;
     double value = rhs[order[c]];
@@ -190,9 +199,10 @@ int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule&
   }
   if (k == 0) return 0;
   const Block dense = {scratch.dense, k + 1};
+  const double most = heaviest(level, weight, order);
   for (int i = 0; i < m; ++i) {
     const int c = level.col_first + i;
-    const double w = std::sqrt(weight[order[c]]);
+    const double w = std::sqrt(std::max(weight[order[c]] / most, kLightest));
     for (int q = 0; q < k; ++q) dense.row(i)[q] = w * x.row(row_first + q)[c];
     dense.row(i)[k] = w * scratch.rhs[i];
   }

@@ -35,6 +35,9 @@ struct QrRange {
 struct RankRule {
   double tolerance = 1e-6;
   double floor = 1e-10;
+  // Optional, by original column number: heavier columns are chosen first, so that what a light
+  // one adds is judged in what the heavy ones leave.
+  const double* weight = nullptr;
 };
 
 // Pivoted Householder QR. `order` and `norm2` are indexed by column and permuted with the columns.
@@ -47,7 +50,9 @@ int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* 
 // transposed, expressed in coordinates of which the first `done` are already spent on earlier
 // levels: finds the smallest change z[done..done+rank) with M z = rhs in the (weighted) least-
 // squares sense. Columns up to col_end are carried along. rhs and weight are indexed by the
-// original column number (order[col]).
+// original column number (order[col]). Weights are above 0; however small, one claims what
+// heavier columns leave. Below kLightest of the heaviest it counts as that.
+inline constexpr double kLightest = 1e-24;  // (1e-12)²: beyond it the solution's digits end
 struct LevelRange {
   int row0 = 0;  // block row of coordinate 0
   int dims = 0;  // coordinates in all

@@ -44,6 +44,7 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   solution_.achieved.assign(extent(sizes.task_rows), 0.0);
   solution_.internal.assign(extent(sizes.internal_rows), 0.0);
   solution_.internal_measured.assign(extent(sizes.internal_rows), 0.0);
+  solution_.level_rows.assign(extent(sizes.levels), 0);
   solution_.level_rank.assign(extent(sizes.levels), 0);
   solution_.level_condition.assign(extent(sizes.levels), 1.0);
   column_norm2_.assign(extent(stride_), 0.0);
@@ -86,6 +87,26 @@ void Wbosc::solve() noexcept {
   finish();
 }
 
+// Columns of Jᵀ: the rows of each level, then those of no weight, which are no part of their level
+// and only carried along.
+void Wbosc::order_task_rows() noexcept {
+  const WboscProblem& p = problem_;
+  int* order = level_order_.data() + col_t_;
+  int column = 0;
+  int first = 0;
+  for (int level = 0; level < p.levels; ++level) {
+    const int before = column;
+    for (int r = first; r < p.level_end[extent(level)]; ++r) {
+      if (p.weight[extent(r)] > 0.0) order[column++] = r;
+    }
+    solution_.level_rows[extent(level)] = column - before;
+    first = p.level_end[extent(level)];
+  }
+  for (int r = 0; r < p.task_rows; ++r) {
+    if (!(p.weight[extent(r)] > 0.0)) order[column++] = r;
+  }
+}
+
 // X = [J_sᵀ | Uᵀ | Jᵀ | h] with h = b + g - known external forces, then whitened.
 void Wbosc::gather() noexcept {
   const WboscProblem& p = problem_;
@@ -98,7 +119,10 @@ void Wbosc::gather() noexcept {
   const double* Js = p.Js.data();
   const double* J = p.J.data();
   for (int c = 0; c < p.contact_rows; ++c) scatter(n, Js + c * n, x_.data() + c, stride_);
-  for (int c = 0; c < p.task_rows; ++c) scatter(n, J + c * n, x_.data() + col_t_ + c, stride_);
+  order_task_rows();
+  for (int c = col_t_; c < col_h_; ++c) {
+    scatter(n, J + level_order_[extent(c)] * n, x_.data() + c, stride_);
+  }
   for (int r = 0; r < n; ++r) {
     double* x = row(r);
     for (int j = col_u_; j < col_t_; ++j) x[j] = 0.0;
@@ -119,7 +143,6 @@ void Wbosc::gather() noexcept {
   for (int c = 0; c < columns_; ++c) {
     contact_order_[extent(c)] = c;
     actuator_order_[extent(c)] = c - col_u_;
-    level_order_[extent(c)] = c - col_t_;
   }
   level_reflectors_ = 0;
 }
@@ -201,18 +224,21 @@ void Wbosc::reduce_actuation() noexcept {
 void Wbosc::solve_levels() noexcept {
   const int k = solution_.contact_rank;
   const int rows = problem_.task_rows;
-  std::copy_n(problem_.J_bias.data(), rows, free_bias_.data());
+  const int* order = level_order_.data() + col_t_;
+  for (int c = 0; c < rows; ++c) y_[extent(c)] = problem_.J_bias[extent(order[c])];
   for (int q = 0; q < sizes_.nv; ++q) {
-    const double weight = q < k ? a1_[extent(q)] : -row(q)[col_h_];
-    add_scaled(rows, weight, row(q) + col_t_, free_bias_.data());
+    const double share = q < k ? a1_[extent(q)] : -row(q)[col_h_];
+    add_scaled(rows, share, row(q) + col_t_, y_.data());
   }
+  for (int c = 0; c < rows; ++c) free_bias_[extent(order[c])] = y_[extent(c)];
   for (int i = 0; i < rows; ++i) rhs_[extent(i)] = problem_.u[extent(i)] - free_bias_[extent(i)];
   level_rank_sum_ = 0;
   std::fill_n(z_.data(), sizes_.nv, 0.0);
   int first = 0;
   for (int level = 0; level < problem_.levels; ++level) {
-    solve_level(level, first, problem_.level_end[extent(level)]);
-    first = problem_.level_end[extent(level)];
+    const int last = first + solution_.level_rows[extent(level)];
+    solve_level(level, first, last);
+    first = last;
   }
 }
 

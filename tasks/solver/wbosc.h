@@ -54,7 +54,8 @@ struct WboscProblem {
   std::vector<double> J;         // task_rows x nv, levels one after the other
   std::vector<double> J_bias;    // J̇ q̇
   std::vector<double> u;         // commanded task acceleration
-  std::vector<double> weight;    // of a row's residual where its level is over-determined
+  std::vector<double> weight;    // of a row's residual where its level is over-determined; not
+                                 // above 0: the row is no part of its level
   std::vector<int> level_end;    // levels: one past the last row of each
   std::vector<double> external;  // nv: known generalised force (0 unless set), e.g. Jᵀf of a foot
   std::vector<double> W_int;     // internal_rows x contact_rows, acts on f (ground on robot)
@@ -75,6 +76,7 @@ struct WboscSolution {
   std::vector<double> achieved;  // task_rows: J q̈ + J̇ q̇ under tau
   std::vector<double> internal;  // internal_rows: W_int f under tau
   std::vector<double> internal_measured;  // internal_rows: W_int f under tau_measured
+  std::vector<int> level_rows;            // levels: rows of a weight above 0
   std::vector<int> level_rank;            // levels
   std::vector<double> level_condition;  // levels: largest over smallest kept pivot; 1 without rows
   int contact_rank = 0;
@@ -95,6 +97,7 @@ class Wbosc {
 
  private:
   void gather() noexcept;
+  void order_task_rows() noexcept;
   void reduce_contacts() noexcept;
   void reduce_redundant_contacts() noexcept;
   void reduce_actuation() noexcept;

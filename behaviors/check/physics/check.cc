@@ -53,13 +53,14 @@ void check_contact_types(const Behavior& behavior, const ControlSpec& control,
 
 }  // namespace
 
-void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics) {
+void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
+                   const PhysicsWorld& world) {
   if (!behavior.has_robot) return;
   model::ControlModel model(behavior.robot);
   PhysicsLaw law(behavior, model);
   const std::vector<model::State> postures = physics_postures(behavior.robot);
   PhysicsFindings findings;
-  PhysicsContext context = {behavior, model, law, postures, findings};
+  PhysicsContext context = {behavior, model, law, postures, findings, world};
   std::set<std::vector<int>> judged;
   for (const auto& [index, state] : controlling_states(behavior)) {
     const ControlSpec& control = behavior.controls[at(index)];
@@ -80,6 +81,8 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics) {
     check_internal_forces(context, control);
   }
   check_references(context);
+  check_gains(context);
+  check_force_feedback(context);
   check_planners(context);
   check_torque_steps(context);
   findings.report(diagnostics);

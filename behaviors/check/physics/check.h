@@ -4,15 +4,26 @@
 // `footfall check` and `footfall run` call it after the loader.
 #pragma once
 
+#include <optional>
+
 #include "behaviors/compiled/behavior.h"
 #include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 
+// What the checks take from the world that a behavior is to run in; the default is the default
+// world, with each contact's friction as in the robot file.
+struct PhysicsWorld {
+  std::optional<double> friction{};  // of the ground: with it a foot has the lesser of both
+  int steps_per_tick = 2;
+  double command_delay = 0.0;  // s, from the tick's command to the torque
+};
+
 // Evaluated at the nominal posture of the robot file and at kSeededPostures around it (postures.h):
 // an error if a configuration is deficient in all of them, a warning if in some. No effect for a
 // behavior without a robot. Throws std::runtime_error with one sentence if the robot's model cannot
 // be compiled.
-void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics);
+void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
+                   const PhysicsWorld& world = {});
 
 }  // namespace footfall::behaviors

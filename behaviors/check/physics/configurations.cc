@@ -162,7 +162,7 @@ class Succession {
         const int from = around.first + before.first;
         const int to = around.first + arrived;
         if (from == to || pairs.size() >= kMaxPairs || !pairs.insert({from, to}).second) continue;
-        changes.push_back({index, from, to, arrival->active});
+        changes.push_back({index, from, to, top, arrival->active});
       }
     }
   }

@@ -19,6 +19,7 @@ struct ControlChange {
   int transition = 0;  // into Behavior::transitions
   int from = 0;        // into Behavior::controls
   int to = 0;
+  int domain = 0;            // what was active strictly below this state is exited
   std::vector<int> entered;  // states entered that are still active after the tick
 };
 

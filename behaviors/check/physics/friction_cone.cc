@@ -2,9 +2,12 @@
 //
 // The robot is at rest: every task at its reference, no feedback. The law's contact forces are
 // those of eq. (30) under its torques ([Kim16] Appendix A), including the internal forces of eqs.
-// (39)-(44). On level ground a foot slips if |f_xy| > mu f_z, and pulls if f_z < 0.
+// (39)-(44). On level ground a foot slips if |f_xy| > mu f_z, and pulls if f_z < 0;
+// mu is the lesser of the robot file's for the foot and, in `run`, scenarios and sweeps, the
+// world's.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -55,6 +58,11 @@ class ForceCheck {
     return values;
   }
 
+  // The lesser of what the robot's file claims for its foot and what the world's ground has.
+  double friction(const model::ContactDescription& contact) const {
+    return std::min(contact.friction, context_.world.friction.value_or(contact.friction));
+  }
+
   std::optional<Overload> overload(const std::vector<double>& internal) {
     const RestSolution solution = context_.law.rest(control_, internal);
     std::optional<Overload> worst;
@@ -64,7 +72,7 @@ class ForceCheck {
           context_.behavior.robot.contacts[static_cast<std::size_t>(control_.contacts[i])];
       const auto& f = solution.forces[i];
       const double tangential = std::hypot(f[0], f[1]);
-      const double excess = tangential - contact.friction * f[2];
+      const double excess = tangential - friction(contact) * f[2];
       if (excess <= worst_excess) continue;
       worst_excess = excess;
       worst = {control_.contacts[i], f[2], tangential};
@@ -117,9 +125,10 @@ class ForceCheck {
         found.normal <= 0.0
             ? fmt::format("{} would pull on the ground", contact.name)
             : fmt::format(
-                  "{} would slip: {:.0f} N along the ground, at most {:g} x {:.0f} N = {:.0f} N",
-                  contact.name, found.tangential, contact.friction, found.normal,
-                  contact.friction * found.normal);
+                  "{} would slip: {:.0f} N along the ground, at most {:g} x {:.0f} N = {:.0f} N{}",
+                  contact.name, found.tangential, friction(contact), found.normal,
+                  friction(contact) * found.normal,
+                  friction(contact) < contact.friction ? " (friction of the world)" : "");
     context_.findings.add(severity, spec(k).mark, "friction-cone", where,
                           fmt::format("internal force '{}' of {:g} N at each foot leaves the "
                                       "friction cone{}: standing still, {}",

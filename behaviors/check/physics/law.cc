@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "behaviors/compiled/control_set.h"
+#include "behaviors/compiled/static_values.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -60,12 +61,16 @@ PhysicsLaw::PhysicsLaw(const Behavior& behavior, const model::ControlModel& mode
 }
 
 std::vector<TaskRow> PhysicsLaw::rows(const ControlSpec& control) const {
+  const StaticValues values(behavior_);
   std::vector<TaskRow> rows;
   for (int k = control.tasks.first; k < control.tasks.end(); ++k) {
     const TaskSpec& task = behavior_.tasks[at(k)];
     const bool of_joint = tasks::info(task.type).of_joints();
     for (int a = task.axes.first; a < task.axes.end(); ++a) {
-      rows.push_back({&task, &behavior_.axes[at(a)], of_joint});
+      const AxisSpec& axis = behavior_.axes[at(a)];
+      const bool unweighted = dependence_of(behavior_, axis.weight).fixed() &&
+                              values.of(axis.weight).value_or(1.0) <= 0.0;
+      if (!unweighted) rows.push_back({&task, &axis, of_joint});
     }
   }
   return rows;

@@ -37,7 +37,8 @@ class PhysicsLaw {
   // The model must outlive this object and be updated before each call.
   PhysicsLaw(const Behavior& behavior, const model::ControlModel& model);
 
-  // All rows of a configuration, by priority, then in document order.
+  // All rows of a configuration, by priority, then in document order, without those whose weight is
+  // always 0: they are no part of their level.
   std::vector<TaskRow> rows(const ControlSpec& control) const;
   // Ranks with each row as its own level, in the given order, by the solver's rank rule.
   RowRanks ranks(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);

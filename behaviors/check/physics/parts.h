@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "behaviors/check/physics/check.h"
 #include "behaviors/check/physics/findings.h"
 #include "behaviors/check/physics/law.h"
-#include "behaviors/check/physics/values.h"
 #include "behaviors/compiled/behavior.h"
+#include "behaviors/compiled/static_values.h"
 #include "model/control_model.h"
 #include "model/state.h"
 
@@ -20,6 +21,7 @@ struct PhysicsContext {
   PhysicsLaw& law;
   const std::vector<model::State>& postures;  // the first is the nominal one
   PhysicsFindings& findings;
+  const PhysicsWorld& world;
 };
 
 // `right_foot and left_foot`, or `no contact`.
@@ -34,6 +36,10 @@ void check_ranks(PhysicsContext& context, const ControlSpec& control, core::Mark
 void check_internal_forces(PhysicsContext& context, const ControlSpec& control);
 // References against joint limits, legs' reach and the robot's tilt limit (reach.cc).
 void check_references(PhysicsContext& context);
+// Feedback of internal forces beyond what the loop bears (force_feedback.cc).
+void check_force_feedback(PhysicsContext& context);
+// Gains that are unstable at the robot's rate (gain_stability.cc).
+void check_gains(PhysicsContext& context);
 // Step-to-step maps of the planners (planner_stability.cc).
 void check_planners(PhysicsContext& context);
 // Torque steps where contacts change (torque_steps.cc).

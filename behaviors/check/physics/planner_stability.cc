@@ -2,8 +2,8 @@
 //
 // [Kim16] V-B with E1, E2 of docs/notation.md: from one change of support to the next, relative to
 // the goal, the CoM's state is multiplied by a matrix A' per axis of the heading frame
-// (behaviors/planners/foot_planner.h). Steps grow without bound if an eigenvalue is outside -1 ..
-// 1.
+// (behaviors/planners/foot_planner.h). Steps grow without bound if the modulus of an
+// eigenvalue, real or complex, exceeds 1.
 //   h   the CoM's height: the reference of the state that asks, else that of the nominal posture
 //   T   duration of a step: from the entry of the stride to the change of support predicted by
 //       `switch_in`, i.e. the timed states before the one that asks, and `switch_in` at its entry
@@ -11,8 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <complex>
 #include <optional>
+#include <vector>
 
 #include "behaviors/check/physics/parts.h"
 #include "behaviors/machine/planner_calls.h"
@@ -32,7 +33,9 @@ class PlannerCheck {
   void run() {
     for (std::size_t p = 0; p < context_.behavior.planners.size(); ++p) {
       const auto planner = static_cast<int>(p);
-      if (const auto timing = longest(planner)) judge(planner, *timing);
+      for (const Timing& timing : timings(planner)) {
+        if (!judge(planner, timing)) break;
+      }
     }
     context_.findings.settle(1);
   }
@@ -44,16 +47,18 @@ class PlannerCheck {
   };
   const Behavior& b() const { return context_.behavior; }
 
-  // The invoke of a planner that covers the whole step; others cover only the rest of it.
-  std::optional<Timing> longest(int planner) const {
-    std::optional<Timing> found;
+  // Of all strides that ask the planner, longest first: each at its own height. Invokes that cover
+  // only the rest of a step are among them, and do no harm: the shorter T, the more stable.
+  std::vector<Timing> timings(int planner) const {
+    std::vector<Timing> found;
     for (const InvokeInfo& invoke : b().invokes) {
       if (invoke.planner != planner || invoke.stance < 0) continue;
       const auto ahead = values_.of(invoke.switch_in);
       if (!ahead || *ahead <= 0.0) continue;
-      const double step = *ahead + before(invoke);
-      if (!found || step > found->step) found = Timing{step, height(invoke)};
+      found.push_back({*ahead + before(invoke), height(invoke)});
     }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Timing& a, const Timing& b) { return a.step > b.step; });
     return found;
   }
 
@@ -119,48 +124,73 @@ class PlannerCheck {
     return {b().tasks.begin() + range.first, b().tasks.begin() + range.end()};
   }
 
-  void judge(int planner, const Timing& timing) {
+  // Whether the planner is stable here, with every kappa that an edit may give it.
+  bool judge(int planner, const Timing& timing) {
     const PlannerInfo& info = b().planners[at(planner)];
     const FootPlannerSpec spec = spec_in_force(info, b().values);
-    if (report(info, spec, timing, Severity::error, {})) return;
-    if (info.kappa_parameter < 0) return;
+    if (report(info, spec, timing, Severity::error, {})) return false;
+    if (info.kappa_parameter < 0) return true;
     const ParameterInfo& parameter = b().parameters[at(info.kappa_parameter)];
-    if (!parameter.live || !parameter.has_range()) return;
+    if (!parameter.live || !parameter.has_range()) return true;
     for (const double end : {parameter.min, parameter.max}) {
       FootPlannerSpec edited = spec;
       edited.kappa = {end, end};
       if (report(info, edited, timing, Severity::warning,
                  fmt::format(" at the end of the range of '{}'", parameter.name))) {
-        return;
+        return false;
       }
     }
+    return true;
   }
 
   bool report(const PlannerInfo& info, const FootPlannerSpec& spec, const Timing& timing,
               Severity severity, const std::string& where) {
-    double worst = 1.0;  // with kappa 0 one eigenvalue is exactly 1: steps drift, but do not grow
+    // With kappa 0 one eigenvalue is exactly 1: steps drift, but do not grow. The rounding of the
+    // closed form is far below any printed digit.
+    constexpr double kRounding = 1e-9;
+    std::complex<double> worst = 1.0;
     std::size_t axis = 0;
     for (std::size_t k = 0; k < 2; ++k) {
-      const auto pair = step_eigenvalues(spec.kappa[k], spec.reversal[k], timing.step,
-                                         timing.height, spec.gravity);
-      constexpr double kRounding = 1e-9;  // of the closed form, far below any printed digit
-      if (std::abs(pair[0]) <= std::abs(worst) + kRounding) continue;
-      worst = pair[0];
+      const std::complex<double> largest = step_eigenvalues(
+          spec.kappa[k], spec.reversal[k], timing.step, timing.height, spec.gravity)[0];
+      if (std::abs(largest) <= std::abs(worst) + kRounding) continue;
+      worst = largest;
       axis = k;
     }
     if (worst == 1.0) return false;
     context_.findings.add(
         severity, info.mark, "unstable-planner", where,
         fmt::format(
-            "planner '{}' diverges{}: an eigenvalue of its step-to-step map in {} is {:.3f} "
-            "(kappa {:g}, reversal {:g} ms, height h {:.3f} m, step time T {:.3f} s), it must "
-            "lie within -1 and 1{}",
-            info.name, where, axis == 0 ? "x" : "y", worst, spec.kappa[axis],
+            "planner '{}' diverges{}: an eigenvalue of its step-to-step map in {} is {} "
+            "(kappa {:g}, reversal {:g} ms, height h {:.3f} m, step time T {:.3f} s), {}{}",
+            info.name, where, axis == 0 ? "x" : "y", eigenvalue_text(worst), spec.kappa[axis],
             1e3 * spec.reversal[axis], timing.height, timing.step,
-            spec.kappa[axis] < 0.0
-                ? "; kappa is positive here, the printed equation has its sign wrong"
-                : ""));
+            worst.imag() == 0.0 ? "it must lie within -1 and 1" : "its modulus must not exceed 1",
+            remedy(spec, timing, axis)));
     return true;
+  }
+
+  static std::string eigenvalue_text(const std::complex<double>& value) {
+    if (value.imag() == 0.0) return fmt::format("{:.3f}", value.real());
+    return fmt::format("{:.3f} +- {:.3f}i, of modulus {:.3f}", value.real(), std::abs(value.imag()),
+                       std::abs(value));
+  }
+
+  // Which of the three conditions of behaviors/planners/foot_planner.h is broken, and what would
+  // meet it.
+  static std::string remedy(const FootPlannerSpec& spec, const Timing& timing, std::size_t axis) {
+    if (spec.kappa[axis] < 0.0) {
+      return "; kappa is positive here, the printed equation has its sign wrong";
+    }
+    if (spec.reversal[axis] < 0.5 * timing.step) {
+      return fmt::format("; reversal must be longer than half the step, {:.0f} ms",
+                         500.0 * timing.step);
+    }
+    const double omega = std::sqrt(spec.gravity / timing.height);
+    const double product =
+        std::tanh(0.5 * omega * timing.step) * std::tanh(omega * spec.reversal[axis]);
+    return fmt::format("; here kappa must be below {:.3f}, or step and reversal shorter",
+                       1.0 / product - 1.0);
   }
 
   PhysicsContext& context_;

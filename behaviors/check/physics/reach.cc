@@ -4,10 +4,14 @@
 // point on the ground; that distance depends only on the joints, not on the base orientation, and
 // is maximised over the joint limits. No false alarm on level ground: tilt, other tasks and other
 // feet only reduce the reachable height.
+// Likewise the base can be above the CoM or a point by no more than a distance that depends on the
+// joints, at a tilt within the robot's limit: a height from which it is still below `limits.height`
+// is a fall.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -36,6 +40,7 @@ class ReachCheck {
         const TaskSpec& task = context_.behavior.tasks[static_cast<std::size_t>(k)];
         for (int a = task.axes.first; a < task.axes.end(); ++a) {
           judge(control, task, context_.behavior.axes[static_cast<std::size_t>(a)]);
+          judge_waypoints(control, task, a - task.axes.first);
         }
       }
     }
@@ -43,6 +48,18 @@ class ReachCheck {
   }
 
  private:
+  // Each point that names the axis, as its reference.
+  void judge_waypoints(const ControlSpec& control, const TaskSpec& task, int k) {
+    AxisSpec axis = context_.behavior.axes[static_cast<std::size_t>(task.axes.first + k)];
+    const Range& points = task.reference.waypoints;
+    for (int p = points.first; p < points.end(); ++p) {
+      axis.value =
+          context_.behavior.waypoints[static_cast<std::size_t>(p)].to[static_cast<std::size_t>(k)];
+      axis.value_mark = axis.mark;
+      judge(control, task, axis);
+    }
+  }
+
   void judge(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
     if (axis.value < 0) return;
     const tasks::TaskTypeInfo& type = tasks::info(task.type);
@@ -113,7 +130,10 @@ class ReachCheck {
     const bool com = point < 0;
     const double lowest = com ? 0.0 : -highest;  // a point may be below the ground, in a ditch
     const auto found = outside(axis, lowest, highest);
-    if (!found) return;
+    if (!found) {
+      judge_fall(task, axis, highest);
+      return;
+    }
     add(axis, "z",
         fmt::format("task '{}' asks for {} of {:.3g} m: {}", name(task),
                     com ? "a centre of mass at a height" : "a point at a height", *found,
@@ -123,13 +143,60 @@ class ReachCheck {
                                                highest)));
   }
 
+  void judge_fall(const TaskSpec& task, const AxisSpec& axis, double highest) {
+    const model::RobotDescription& robot = context_.behavior.robot;
+    const double limit = robot.height_limit * robot.standing_height;
+    const double above = base_above(task.point);
+    const auto found = outside(axis, limit - above, highest);
+    if (!found) return;
+    add(axis, "z",
+        fmt::format("task '{}' asks for {} of {:.3g} m: the base is then {:.3g} m above the ground "
+                    "at most, and below {:.3g} m (limits.height of the robot) it counts as fallen",
+                    name(task),
+                    task.point < 0 ? "a centre of mass at a height" : "a point at a height", *found,
+                    *found + above, limit));
+  }
+
+  // How far the base can be above the CoM (-1) or a point, over the joints' limits and tilts
+  // within the robot's, m.
+  double base_above(int point) {
+    if (const auto known = base_above_.find(point); known != base_above_.end()) {
+      return known->second;
+    }
+    const double tilt = context_.behavior.robot.tilt_limit;
+    double best = -1e9;
+    for (std::size_t k = 0; k < context_.postures.size(); k += 4) {
+      best = std::max(best, climb(context_.postures[k], [&](const model::State& state) {
+                        return base_over(state, point, tilt);
+                      }));
+    }
+    return base_above_[point] = best + (kSlack - 1.0) * std::abs(best);
+  }
+
+  // The z component of base minus point, with the base turned in the best way by `tilt` at most.
+  double base_over(const model::State& state, int point, double tilt) {
+    context_.model.update(state);
+    const auto& p =
+        point < 0 ? context_.model.com().position : context_.model.point_position(point);
+    const auto& R = context_.model.R_WB();
+    std::array<double, 3> d{};  // from the base, world
+    for (std::size_t i = 0; i < 3; ++i) d[i] = p[i] - context_.model.state().p_WB[i];
+    const double down = -(R[2] * d[0] + R[5] * d[1] + R[8] * d[2]);  // along the base's own z
+    const double length = std::hypot(d[0], d[1], d[2]);
+    if (!(length > 0.0)) return 0.0;
+    const double angle = std::acos(std::clamp(down / length, -1.0, 1.0));
+    return length * std::cos(std::max(0.0, angle - tilt));
+  }
+
   // Largest distance of the CoM (-1) or a point from a contact point over the joints' limits, m.
   double farthest(int contact, int point) {
     const auto key = std::make_pair(contact, point);
     if (const auto known = farthest_.find(key); known != farthest_.end()) return known->second;
     double best = 0.0;
     for (std::size_t k = 0; k < context_.postures.size(); k += 4) {
-      best = std::max(best, climb(context_.postures[k], contact, point));
+      best = std::max(best, climb(context_.postures[k], [&](const model::State& state) {
+                        return distance(state, contact, point);
+                      }));
     }
     return farthest_[key] = kSlack * best;
   }
@@ -143,8 +210,8 @@ class ReachCheck {
   }
 
   // Coordinate ascent: moves each joint in turn by a step that is halved when it no longer helps.
-  double climb(model::State state, int contact, int point) {
-    double best = distance(state, contact, point);
+  double climb(model::State state, const std::function<double(const model::State&)>& size) {
+    double best = size(state);
     double step = 0.5;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       bool better = false;
@@ -153,7 +220,7 @@ class ReachCheck {
         for (const double move : {step, -step}) {
           const double before = state.q[j];
           state.q[j] = std::clamp(before + move, joint.position_min, joint.position_max);
-          const double now = distance(state, contact, point);
+          const double now = size(state);
           if (now > best) {
             best = now;
             better = true;
@@ -170,6 +237,7 @@ class ReachCheck {
   PhysicsContext& context_;
   StaticValues values_;
   std::map<std::pair<int, int>, double> farthest_;
+  std::map<int, double> base_above_;  // by point
 };
 
 }  // namespace

@@ -49,7 +49,10 @@ class StepCheck {
   void judge(const ControlChange& change) {
     int before = change.from;
     const TransitionSpec* loading = transition(control(before));
-    if (loading != nullptr && loading->loads && loading->toward >= 0) before = loading->toward;
+    // Done with its loading, unless the transition is taken beside it, in another region or below.
+    const bool loaded = loading != nullptr && loading->loads && loading->toward >= 0 &&
+                        context_.behavior.is_descendant(loading->owner, change.domain);
+    if (loaded) before = loading->toward;
     const std::vector<int>& left = control(before).contacts;
     const std::vector<int>& now = control(change.to).contacts;
     if (covered(left, now, {}) && covered(now, left, {})) return;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 
 #include "behaviors/loader.h"
@@ -35,26 +36,46 @@ void list_files(const Diagnostics& from, std::vector<std::string>& files) {
   }
 }
 
+// Errors that the behavior has in this world and not in the default one: no run of the sweep could
+// start there.
+void check_in_world(const behaviors::Behavior& behavior, const std::vector<std::string>& files,
+                    const behaviors::PhysicsWorld& world, Diagnostics& diagnostics) {
+  Diagnostics usual, found;
+  for (const std::string& file : files) {
+    usual.add_file(file);
+    found.add_file(file);
+  }
+  behaviors::check_physics(behavior, usual);
+  if (usual.has_errors()) return;  // left to the runs, which may vary what is wrong
+  behaviors::check_physics(behavior, found, world);
+  take_errors(found, diagnostics);
+}
+
 // Checks the behavior or scenario itself, and takes the settings that the sweep leaves to it.
 void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagnostics& diagnostics,
                 std::vector<std::string>& files) {
   Diagnostics found;
   std::string model;
+  std::unique_ptr<behaviors::Behavior> behavior;
+  std::vector<std::string> behavior_files;
   if (sweep.scenario.empty()) {
     behaviors::LoadOptions load;
     load.search = options.search;
     load.robot = sweep.robot;
-    const auto behavior = behaviors::load_behavior(sweep.behavior, load, found);
+    behavior = behaviors::load_behavior(sweep.behavior, load, found);
     if (behavior != nullptr && !behavior->has_robot) {
       found.error({found.add_file(sweep.behavior), 0, 0}, "missing-key",
                   "a behavior without `robot:` cannot be run");
     }
     if (behavior != nullptr) model = behavior->robot.model_path;
+    for (int k = 0; k < found.file_count(); ++k) behavior_files.push_back(found.file(k));
   } else {
-    const ScenarioDescription scenario = load_scenario(sweep.scenario, {options.search, {}}, found);
+    ScenarioDescription scenario = load_scenario(sweep.scenario, {options.search, {}}, found);
     if (sweep.seeds.empty()) sweep.seeds = scenario.seeds;
     if (sweep.duration.empty()) sweep.duration_s = scenario.duration;
-    if (scenario.behavior != nullptr) model = scenario.behavior->robot.model_path;
+    behavior = std::move(scenario.behavior);
+    if (behavior != nullptr) model = behavior->robot.model_path;
+    behavior_files = scenario.behavior_files;
     files.insert(files.end(), scenario.behavior_files.begin(), scenario.behavior_files.end());
   }
   take_errors(found, diagnostics);
@@ -62,9 +83,11 @@ void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagn
   if (!model.empty()) files.push_back(model);
   for (std::size_t w = 0; w < options.worlds.size(); ++w) {
     Diagnostics world;
-    options.check_world(options.worlds[w], world);
+    const behaviors::PhysicsWorld physics = options.check_world(options.worlds[w], world);
     take_errors(world, diagnostics);
     list_files(world, files);
+    const bool good = behavior != nullptr && behavior->has_robot && !diagnostics.has_errors();
+    if (good) check_in_world(*behavior, behavior_files, physics, diagnostics);
   }
 }
 

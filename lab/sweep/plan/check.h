@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "behaviors/check/physics/check.h"
 #include "lab/sweep/plan/sweep.h"
 
 namespace footfall::lab {
@@ -12,8 +13,9 @@ namespace footfall::lab {
 struct SweepCheckOptions {
   std::vector<std::string> search;  // folders with robots/ and behaviors/library/
   std::vector<std::string> worlds;  // path of each of the sweep's worlds
-  // Loads a world and reports its errors; supplied by the caller, because the loader is in sim.
-  std::function<void(const std::string& path, core::Diagnostics&)> check_world;
+  // Loads a world, reports its errors and says what the physics checks take from it; supplied by
+  // the caller, because the loader is in sim.
+  std::function<behaviors::PhysicsWorld(const std::string& path, core::Diagnostics&)> check_world;
 };
 
 // Reports problems at the sweep value that causes them. Individually listed values are all tried,

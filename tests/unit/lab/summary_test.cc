@@ -103,6 +103,21 @@ TEST(Summary, WhatDoesNotApplyIsNull) {
   EXPECT_EQ(json["steps"], 0);
 }
 
+// The behavior counts its marks, the run what the feet do: where they differ wholly, it is said.
+TEST(Summary, MarkedStepsThatNoFootMadeAreSaid) {
+  lab::RunResult result;
+  result.marked_steps = 7;
+  const lab::RunIdentity id = {"balance", "hume", "flat", "mujoco", 1, "", ""};
+  EXPECT_NE(lab::summary_text(id, result).find("NO STEPS     the behavior marked 7, but no foot"),
+            std::string::npos);
+  EXPECT_EQ(lab::summary_json(id, result)["marked_steps"], 7);
+  result.figures.steps = 6;
+  EXPECT_EQ(lab::summary_text(id, result).find("NO STEPS"), std::string::npos);
+  result.figures.steps = 0;
+  result.marked_steps = 0;
+  EXPECT_EQ(lab::summary_text(id, result).find("NO STEPS"), std::string::npos);
+}
+
 TEST(Summary, WhatAWallClockMeasuredIsInASecondFile) {
   Rig rig("balance");
   lab::RunSpec spec;

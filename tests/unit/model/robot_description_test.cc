@@ -135,6 +135,16 @@ TEST_F(RobotDescriptionTest, ReactionsHaveSafeDefaults) {
   EXPECT_EQ(reaction(core::Fault::no_estimate), core::Reaction::safe_stop);
 }
 
+TEST_F(RobotDescriptionTest, TheLimitOfConditionIsARatio) {
+  EXPECT_DOUBLE_EQ(load(kRobot).condition_limit, 100.0);
+  std::string text(kRobot);
+  const std::string key = "overruns: 4";
+  text.replace(text.find(key), key.size(), key + ", condition: 40");
+  EXPECT_DOUBLE_EQ(load(text).condition_limit, 40.0);
+  EXPECT_NE(problems("overruns: 4", "condition: 0.5").find("a ratio of at least 1"),
+            std::string::npos);
+}
+
 TEST_F(RobotDescriptionTest, AFaultAfterWhichNothingCanGoOnRefusesToContinue) {
   for (const char* fault : {"fall", "simulator", "non_finite", "no_estimate"}) {
     const std::string text = problems("fall: safe_stop", std::string(fault) + ": continue");

@@ -25,6 +25,26 @@ class BadInput(Case):
     def test_missing_file(self):
         self.refused(self.run_it("no/such.yaml"), 2, "no/such.yaml")
 
+    # At 98 N on each foot 32 N need a friction of 0.33; the default world has 0.9, slippery 0.3.
+    def test_the_friction_of_the_world_is_that_of_the_check(self):
+        path = self.write("b.yaml", """behavior: 1
+robot: hume
+machine:
+  contacts: [right_foot, left_foot]
+  tasks:
+    height: {type: com_position, axes: [z], priority: 1, reference: entry, gains: {kp: 270, kd: 10}}
+    attitude: {type: body_orientation, priority: 1, reference: 0, gains: {kp: 200, kd: 15}}
+    rest: {type: joint_damping, priority: 2, gains: {kd: 2}}
+  internal: {s: {between: [right_foot, left_foot], reference: 32 N}}
+  states:
+    stand: {after: 100 ms, to: end}
+    end: {type: final}
+""")
+        self.assertEqual(self.footfall("run", path, "--quiet", "--no-log").returncode, 0)
+        self.refused(self.run_it(path, "--world", "slippery"), 2, "b.yaml:9:", "friction of the world")
+        scenario = self.write("s.yaml", "scenario: 1\nbehavior: b.yaml\nworld: slippery\nfor: 50 ms\nexpect: [faults == 0]\n")
+        self.refused(self.run_it(scenario), 2, "friction of the world")
+
     def test_a_folder_as_file(self):
         self.refused(self.run_it(str(self.folder)), 2)
 

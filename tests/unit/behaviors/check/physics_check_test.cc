@@ -1,6 +1,7 @@
 // Internal forces, references, planners and torque steps as the checks judge them. Oracles: statics
 // of two feet by hand, the pendulum's step-to-step map as a matrix. Equations: [Kim16] eqs.
 // (7)-(10) with E10, eqs. (19), (21) with E1.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -76,6 +77,25 @@ TEST(PhysicsForces, FrictionIsTheRobotFiles) {
   EXPECT_THAT(physics(squeezing("20 N"), slippery), HasSubstr("at most 0.1 x "));
 }
 
+// At 98 N on each foot, 32 N need a friction of 0.327.
+TEST(PhysicsForces, TheWorldsFrictionCountsWhereItIsLess) {
+  const auto judge = [](std::optional<double> friction) {
+    core::Diagnostics diagnostics, findings;
+    const auto behavior = behaviors::load_behavior_text(squeezing("32 N"), "b.yaml",
+                                                        options_for_tests(), diagnostics);
+    for (int f = 0; f < diagnostics.file_count(); ++f) findings.add_file(diagnostics.file(f));
+    behaviors::check_physics(*behavior, findings, {.friction = friction});
+    return findings.to_string();
+  };
+  EXPECT_EQ(judge(std::nullopt), "");
+  EXPECT_EQ(judge(0.9), "");
+  EXPECT_EQ(judge(2.0), "");
+  EXPECT_THAT(judge(0.3),
+              HasSubstr("error: internal force 'tension' of 32 N at each foot leaves the "
+                        "friction cone: standing still, "));
+  EXPECT_THAT(judge(0.3), HasSubstr("at most 0.3 x 98 N = 29 N (friction of the world)"));
+}
+
 TEST(PhysicsContacts, SurfacesAreRefusedByName) {
   const auto flat = with_contacts(testing::TempDir(), "{site: right_foot, type: surface}",
                                   "{site: left_foot, type: fixed}");
@@ -110,6 +130,36 @@ TEST(PhysicsReach, WhatStraightLegsReachIsNotRefused) {
   EXPECT_EQ(physics(height_of("\"= entry + 6 cm\"")), "");
   EXPECT_EQ(physics(height_of("{trajectory: minimum_jerk, to: \"= entry - 3 cm\", over: 1 s}")),
             "");
+}
+
+// Hume's base must stay above 60 % of 0.84 m; its CoM is some centimetres above the base. Oracle:
+// the base of a crouch whose CoM is there.
+TEST(PhysicsReach, AHeightAtWhichItCountsAsFallenIsRefused) {
+  const auto at_height = [](const std::string& reference) {
+    return standing("[right_foot, left_foot]",
+                    "      height: {type: com_position, axes: [z], reference: " + reference +
+                        ", gains: {kp: 100, kd: 20}}\n" + attitude("[yaw, pitch, roll]") + rest());
+  };
+  const std::string text = at_height("0.45 m");
+  EXPECT_THAT(physics(text),
+              StartsWith(place_of(text, "0.45 m") +
+                         "error: task 'height' asks for a centre of mass at a height "
+                         "of 0.45 m: the base is then 0."));
+  EXPECT_THAT(physics(text),
+              HasSubstr("m above the ground at most, and below 0.504 m (limits.height "
+                        "of the robot) it counts as fallen"));
+  EXPECT_EQ(physics(at_height("0.65 m")), "");
+  EXPECT_THAT(physics(at_height("{trajectory: minimum_jerk, to: 0.4 m, over: 1 s}")),
+              HasSubstr("it counts as fallen"));
+  EXPECT_THAT(physics(at_height("{trajectory: waypoints, over: 2 s, points: [{at: 1 s, to: 0.4 m}, "
+                                "{at: 2 s, to: 0.8 m}]}")),
+              HasSubstr("it counts as fallen"));
+  const std::string hips =
+      "      hips: {type: point_position, point: hip_center, axes: [z], reference: 0.5 m, gains: "
+      "{kp: 100, kd: 20}}\n";
+  EXPECT_THAT(
+      physics(standing("[right_foot, left_foot]", hips + attitude("[yaw, pitch, roll]") + rest())),
+      HasSubstr("the base is then 0.5 m above the ground at most"));
 }
 
 TEST(PhysicsReach, JointsHaveLimitsAndTheBodyMayNotTiltAsIfFallen) {
@@ -185,6 +235,41 @@ TEST(PhysicsPlanner, TheCorrectedSignIsClean) {
   EXPECT_EQ(physics(walking("0")), "");  // steps drift, they do not grow
 }
 
+// kappa 0.9, reversal 500 ms, 540 ms a step: a conjugate pair, which the real parts hide.
+TEST(PhysicsPlanner, AComplexPairIsJudgedByItsModulus) {
+  std::string text = walking("0.9");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + 1)) {
+      text.replace(at, from.size(), to);
+    }
+  };
+  replace("185 ms", "500 ms");
+  replace("295 ms", "500 ms");
+  const std::string said = physics(text);
+  EXPECT_THAT(said, HasSubstr("error: planner 'foot' diverges: an eigenvalue of its step-to-step "
+                              "map in x is "));
+  EXPECT_THAT(said, HasSubstr(fmt::format("i, of modulus {:.3f} (kappa 0.9, reversal 500 ms",
+                                          largest_eigenvalue(0.9, 0.5, 0.935, 0.54))));
+  EXPECT_THAT(said, HasSubstr("its modulus must not exceed 1; here kappa must be below 0."));
+}
+
+// The longer of two strides, each at a height of its own, is not always the less stable one.
+TEST(PhysicsPlanner, EveryStrideIsJudgedAtItsOwnHeight) {
+  const std::string low =
+      R"(    low:
+      tasks: {height: {type: com_position, axes: [z], reference: 0.5 m, gains: {kp: 1}}}
+      invoke: [{planner: foot, with: {stance: right_foot, swing: left_foot, switch_in: "= 320 ms - t"}}]
+      after: 320 ms
+      to: ready
+)";
+  std::string text = walking("0.9");
+  text.replace(text.find("185 ms"), 6, "350 ms");
+  EXPECT_LT(largest_eigenvalue(0.9, 0.35, 0.935, 0.335), 1.0);
+  EXPECT_GT(largest_eigenvalue(0.9, 0.35, 0.5, 0.32), 1.0);
+  EXPECT_EQ(physics(text), "");
+  EXPECT_THAT(physics(text + low), HasSubstr("error: planner 'foot' diverges"));
+}
+
 TEST(PhysicsPlanner, ANegativeKappaNeedsARangeThatAllowsIt) {
   EXPECT_THAT(problems(walking("-0.4")), HasSubstr("error: kappa -0.4 is outside 0 .. 1"));
   EXPECT_THAT(problems(walking("$k", "parameters: {k: -0.4}\n")), HasSubstr("is outside 0 .. 1"));
@@ -245,6 +330,49 @@ TEST(PhysicsSteps, LoadingCoversWhatComesAfterIt) {
   EXPECT_EQ(physics(two_stances(loads)), "");
   const std::string at_once = "    one: {stack: single, " + release + ", after: 1 s, to: both}\n";
   EXPECT_THAT(physics(two_stances(at_once)), HasSubstr("that loads in the state left"));
+}
+
+// A region beside the stride changes the law while a foot is being loaded: nothing of the feet
+// changes by that. The stride's own transitions are judged as ever.
+std::string beside_a_nod(const std::string& load, const std::string& after_load) {
+  return "behavior: 1\nrobot: hume\nstacks:\n"
+         "  dual:\n    contacts: [right_foot, left_foot]\n    tasks:\n" +
+         dual_tasks() + "  single:\n    contacts: [right_foot]\n    tasks:\n" + single_tasks() +
+         std::string(
+             "machine:\n  states:\n    all:\n      type: parallel\n      states:\n"
+             "        stride:\n          states:\n"
+             "            both: {stack: dual, after: 1 s, to: one}\n"
+             "            one: {stack: single, contact_transition: {releases: left_foot, over: 24 "
+             "ms}, after: 1 s, to: load}\n") +
+         "            load: {stack: single, " + load + "after: 24 ms, to: " + after_load +
+         "}\n        nod:\n          states:\n"
+         "            down: {tasks: {knee: {type: joint_posture, joints: [left_knee], priority: 3, "
+         "reference: 0.1, gains: {kp: 1}}}, after: 70 ms, to: up}\n"
+         "            up: {tasks: {knee: {type: joint_posture, joints: [left_knee], priority: 3, "
+         "reference: 0, gains: {kp: 1}}}, after: 70 ms, to: down}\n";
+}
+
+TEST(PhysicsSteps, OnlyWhereTheOwnerOfTheTransitionIsLeftIsItsLawReached) {
+  const std::string load = "contact_transition: {loads: left_foot, over: 24 ms, toward: dual}, ";
+  EXPECT_EQ(physics(beside_a_nod(load, "both")), "");
+  const std::string without = physics(beside_a_nod("", "both"));
+  EXPECT_THAT(without, HasSubstr("that loads in the state left"));
+  EXPECT_THAT(without, HasSubstr("when 'all.stride.load' is left"));
+  EXPECT_THAT(without, testing::Not(HasSubstr("nod")));
+  EXPECT_THAT(physics(beside_a_nod(load, "one")), testing::Not(HasSubstr("nod")));
+}
+
+// Nor do transitions between children of the state that declares it.
+TEST(PhysicsSteps, ChildrenOfTheStateThatLoadsMayChange) {
+  const std::string loads =
+      "    one: {stack: single, contact_transition: {releases: left_foot, over: 24 ms}, after: 1 "
+      "s, "
+      "to: load}\n"
+      "    load:\n      stack: single\n      contact_transition: {loads: left_foot, over: 24 ms, "
+      "toward: dual}\n      after: 24 ms\n      to: both\n      states:\n"
+      "        early: {tasks: {attitude: {reference: 0.1}}, after: 10 ms, to: late}\n"
+      "        late: {tasks: {attitude: {reference: 0}}}\n";
+  EXPECT_EQ(physics(two_stances(loads)), "");
 }
 
 TEST(PhysicsCheck, ABehaviorWithoutARobotHasNoPhysics) {

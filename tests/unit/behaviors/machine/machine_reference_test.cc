@@ -289,31 +289,6 @@ TEST(MachineReference, GainsThatAreExpressionsAreReadAtEveryTick) {
   EXPECT_EQ(run.active(), "caught");
 }
 
-TEST(MachineReference, FromTheStanceFootAKeptReferenceStaysWhereItIsInTheWorld) {
-  Runner run(
-      load("behavior: 1\nrobot: hume\nmachine:\n"
-           "  tasks: {h: {type: com_position, frame: stance, axes: [z], gains: {kp: 1}, reference: "
-           "{trajectory: hold}}}\n  states:\n    a: {contacts: [right_foot], after: 10 ms, to: b}\n"
-           "    b: {contacts: [left_foot], tasks: {h: {reference: {trajectory: polynomial, order: "
-           "3, to: "
-           "0.95 m, over: 100 ms}}}}\n"),
-      Body::standing);
-  run.state.q[4] -= 0.4;  // the left foot is on a step
-  run.model->update(run.state);
-  run.carry_com(2, 1.0);
-  const double above_right = 1.0 - run.model->point_position(0)[2];
-  const double above_left = 1.0 - run.model->point_position(1)[2];
-  ASSERT_GT(std::abs(above_right - above_left), 0.02);
-  run.start();
-  run.tick();
-  EXPECT_NEAR(run.axis("h", 0).ref, above_right, 1e-12);
-  run.run_to(15);
-  ASSERT_EQ(run.active(), "b");
-  EXPECT_NEAR(run.axis("h", 0).ref, above_left, 1e-12);
-  run.run_to(200);
-  EXPECT_DOUBLE_EQ(run.axis("h", 0).ref, 0.95);
-}
-
 TEST(MachineReference, SeveralFeetMayBeReleasedAtOnce) {
   Runner run(
       load("behavior: 1\nrobot: hume\nmachine:\n  states:\n"

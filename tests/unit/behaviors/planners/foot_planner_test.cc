@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 namespace footfall::tests {
 namespace {
@@ -19,10 +20,10 @@ using behaviors::plan_foot;
 
 using Axis = std::array<double, 2>;  // position from the foot, velocity
 
-// ẍ = g/h x by Runge-Kutta of fourth order; 1000 steps: error below 1e-12 here.
+// ẍ = g/h x by Runge-Kutta of fourth order; 200 steps: error below 1e-10 here.
 Axis pendulum(Axis s, double g, double h, double time) {
   const double w2 = g / h;
-  const int steps = 1000;
+  const int steps = 200;
   const double dt = time / steps;
   const auto slope = [w2](const Axis& a) { return Axis{a[1], w2 * a[0]}; };
   const auto along = [](const Axis& a, const Axis& b, double t) {
@@ -65,8 +66,8 @@ TEST(FootPlanner, VelocityReversesAfterTheTimeAskedFor) {
 
 // Step-to-step map of one axis built from the planner itself: state at a switch, about the goal,
 // -> new foot -> pendulum for a step -> state at the next switch. Linear: two columns are enough.
-std::array<double, 2> eigenvalues_of_planner(const FootPlannerSpec& spec, std::size_t axis,
-                                             double height, double step_time) {
+std::array<Axis, 2> map_of_planner(const FootPlannerSpec& spec, std::size_t axis, double height,
+                                   double step_time) {
   std::array<Axis, 2> columns{};
   for (std::size_t c = 0; c < 2; ++c) {
     FootPlannerInput in;
@@ -81,23 +82,49 @@ std::array<double, 2> eigenvalues_of_planner(const FootPlannerSpec& spec, std::s
         pendulum({in.com[axis] - foot, in.com_vel[axis]}, spec.gravity, height, step_time);
     columns[c] = {(next[0] + foot) / 0.01, next[1] / 0.01};
   }
+  return columns;
+}
+
+using Pair = std::array<std::complex<double>, 2>;
+
+Pair eigenvalues_of_planner(const FootPlannerSpec& spec, std::size_t axis, double height,
+                            double step_time) {
+  const auto columns = map_of_planner(spec, axis, height, step_time);
   const double trace = columns[0][0] + columns[1][1];
   const double det = columns[0][0] * columns[1][1] - columns[1][0] * columns[0][1];
-  const double root = std::sqrt(0.25 * trace * trace - det);
+  const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * trace * trace - det));
   return {0.5 * trace + root, 0.5 * trace - root};
 }
 
-void expect_same_pair(std::array<double, 2> a, std::array<double, 2> b, double tolerance) {
-  std::sort(a.begin(), a.end());
-  std::sort(b.begin(), b.end());
-  EXPECT_NEAR(a[0], b[0], tolerance);
-  EXPECT_NEAR(a[1], b[1], tolerance);
+// In either order.
+void expect_same_pair(const Pair& a, Pair b, double tolerance) {
+  if (std::abs(a[0] - b[0]) > std::abs(a[0] - b[1])) std::swap(b[0], b[1]);
+  EXPECT_NEAR(std::abs(a[0] - b[0]), 0.0, tolerance);
+  EXPECT_NEAR(std::abs(a[1] - b[1]), 0.0, tolerance);
+}
+
+// How much a map grows in a step, in the long run, without an eigenvalue: ‖A^n‖^(1/n) for
+// n = 2^40 by squaring, kept at norm 1.
+double growth(std::array<Axis, 2> A) {
+  double log_norm = 0.0;  // of A^n, over n
+  double n = 1.0;
+  for (int k = 0; k < 40; ++k, n *= 2.0) {
+    const double norm = std::hypot(std::hypot(A[0][0], A[0][1]), std::hypot(A[1][0], A[1][1]));
+    if (norm == 0.0) return 0.0;
+    log_norm += std::log(norm) / n;
+    for (Axis& column : A) column = {column[0] / norm, column[1] / norm};
+    const auto times = [&A](const Axis& v) {
+      return Axis{A[0][0] * v[0] + A[1][0] * v[1], A[0][1] * v[0] + A[1][1] * v[1]};
+    };
+    A = {times(A[0]), times(A[1])};
+  }
+  return std::exp(log_norm);
 }
 
 TEST(FootPlanner, EigenvaluesInClosedFormAreThoseOfThePlannerItself) {
-  for (const double kappa : {0.0, 0.2, 0.4}) {
-    for (const double reversal : {0.18, 0.2, 0.25}) {
-      for (const double step_time : {0.3, 0.343, 0.4}) {
+  for (const double kappa : {0.0, 0.2, 0.4, 0.9}) {
+    for (const double reversal : {0.18, 0.2, 0.25, 0.5}) {
+      for (const double step_time : {0.3, 0.343, 0.4, 0.55}) {
         FootPlannerSpec spec;
         spec.kappa = {kappa, kappa};
         spec.reversal = {reversal, reversal};
@@ -105,6 +132,65 @@ TEST(FootPlanner, EigenvaluesInClosedFormAreThoseOfThePlannerItself) {
         expect_same_pair(closed, eigenvalues_of_planner(spec, 0, 0.9, step_time), 1e-8);
         expect_same_pair(closed, eigenvalues_of_planner(spec, 1, 0.9, step_time), 1e-8);
         EXPECT_GE(std::abs(closed[0]), std::abs(closed[1]));
+      }
+    }
+  }
+}
+
+// Where the eigenvalues are a conjugate pair their modulus is √det, beyond 1 for a slow reversal.
+TEST(FootPlanner, ASlowReversalWithALargeKappaDivergesByAComplexPair) {
+  const Pair pair = behaviors::step_eigenvalues(0.9, 0.5, 0.54, 0.91, 9.81);
+  EXPECT_GT(std::abs(pair[0].imag()), 0.1);
+  EXPECT_EQ(pair[0], std::conj(pair[1]));
+  EXPECT_GT(std::abs(pair[0]), 1.2);
+  FootPlannerSpec spec;
+  spec.kappa = {0.9, 0.9};
+  spec.reversal = {0.5, 0.5};
+  EXPECT_NEAR(std::abs(pair[0]), growth(map_of_planner(spec, 0, 0.91, 0.54)), 1e-8);
+}
+
+// 21 x 21 x 24 settings; the oracle steps the planner and the pendulum, and knows no eigenvalue.
+TEST(FootPlanner, OfAllSettingsExactlyThoseThatGrowHaveAnEigenvalueBeyondOne) {
+  constexpr double kMargin = 1e-7;  // of the oracle's integration
+  int settings = 0, growing = 0, unstable_passed = 0, stable_refused = 0, complex_pairs = 0;
+  for (int i = 0; i < 21; ++i) {
+    for (int j = 0; j < 21; ++j) {
+      for (int k = 0; k < 24; ++k) {
+        const double kappa = 0.05 * i, reversal = 0.1 + 0.02 * j, step_time = 0.2 + 0.02 * k;
+        FootPlannerSpec spec;
+        spec.kappa = {kappa, kappa};
+        spec.reversal = {reversal, reversal};
+        const double grows = growth(map_of_planner(spec, 0, 0.9, step_time));
+        const Pair pair = behaviors::step_eigenvalues(kappa, reversal, step_time, 0.9, 9.81);
+        const double modulus = std::abs(pair[0]);
+        EXPECT_NEAR(modulus, grows, 1e-6 * grows) << kappa << ' ' << reversal << ' ' << step_time;
+        unstable_passed += grows > 1.0 + kMargin && modulus <= 1.0 + 1e-9;
+        stable_refused += grows < 1.0 - kMargin && modulus > 1.0 + 1e-9;
+        growing += grows > 1.0 + kMargin;
+        complex_pairs += pair[0].imag() != 0.0;
+        ++settings;
+      }
+    }
+  }
+  EXPECT_EQ(settings, 10584);
+  EXPECT_EQ(unstable_passed, 0);
+  EXPECT_EQ(stable_refused, 0);
+  EXPECT_GT(growing, 1000);
+  EXPECT_GT(settings - growing, 1000);
+  EXPECT_GT(complex_pairs, 1000);
+}
+
+// The three conditions in words: behaviors/planners/foot_planner.h.
+TEST(FootPlanner, StabilityIsThreeInequalities) {
+  for (const double kappa : {-0.2, 0.1, 0.5, 0.9}) {
+    for (const double reversal : {0.15, 0.2, 0.3, 0.5}) {
+      for (const double step_time : {0.25, 0.35, 0.45, 0.55}) {
+        const double w = std::sqrt(9.81 / 0.9);
+        const bool stable =
+            kappa >= 0.0 && reversal >= step_time / 2 &&
+            (1 + kappa) * std::tanh(w * step_time / 2) * std::tanh(w * reversal) <= 1;
+        const Pair pair = behaviors::step_eigenvalues(kappa, reversal, step_time, 0.9, 9.81);
+        EXPECT_EQ(std::abs(pair[0]) <= 1.0 + 1e-9, stable) << kappa << ' ' << reversal;
       }
     }
   }
@@ -124,8 +210,8 @@ TEST(FootPlanner, ThePrintedSignOfKappaIsUnstable) {
   spec.kappa = {-0.4, -0.4};
   spec.reversal = {0.185, 0.18};
   const auto pair = eigenvalues_of_planner(spec, 0, 0.935, 0.335);
-  EXPECT_NEAR(std::max(pair[0], pair[1]), 1.28, 0.01);
-  EXPECT_GT(behaviors::step_eigenvalues(-0.4, 0.185, 0.335, 0.935, 9.81)[0], 1.0);
+  EXPECT_NEAR(std::max(pair[0].real(), pair[1].real()), 1.28, 0.01);
+  EXPECT_GT(std::abs(behaviors::step_eigenvalues(-0.4, 0.185, 0.335, 0.935, 9.81)[0]), 1.0);
 }
 
 TEST(FootPlanner, WithoutKappaOneEigenvalueIsOneAndStepsDrift) {

@@ -248,9 +248,10 @@ TEST_F(YamlFileTest, ABaseIsFoundByNameInALibraryAndBesideFirst) {
 
   const std::string wrong = write("wrong.yaml", "base: wlak\n");
   load_yaml_with_base(wrong, diagnostics_, nullptr, library);
-  EXPECT_EQ(diagnostics_.to_string(), wrong + ":1:7: error: no file '" + path_of("wlak") +
-                                          "', and no 'wlak.yaml' in a behaviors/library here, above, "
-                                          "or in the search path (did you mean 'walk'?)\n");
+  EXPECT_EQ(diagnostics_.to_string(),
+            wrong + ":1:7: error: no file '" + path_of("wlak") +
+                "', and no 'wlak.yaml' in a behaviors/library here, above, "
+                "or in the search path (did you mean 'walk'?)\n");
 }
 
 TEST_F(YamlFileTest, CyclesAndMissingBasesAreErrors) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <optional>
 
 #include "engine/log/writer.h"
@@ -30,10 +31,14 @@ using core::Reaction;
 
 constexpr std::int64_t kCause = 40;  // the tick in which something goes wrong
 constexpr int kLate = 3;             // limits.overruns of the robot
-constexpr int kSwing = 15;           // ticks of its limits.swing where that is tried
+// limits.swing, ms at 1500 Hz, half of which passes between the ticks kCause and kCause + 1.
+constexpr double kLoadedSwing = (2 * kCause + 1) / 1.5;
+constexpr int kSwing = 15;  // ticks of its limits.swing where that is tried
 
 // Level 1 has rank 3 in the nominal posture; with straight legs its height cannot be moved.
+// Where a swing is tried the left foot is let go of, and stays on the ground.
 std::string behavior_text(const std::string& robot, std::string_view fault) {
+  const bool swings = fault == core::fault_name(Fault::swing_contact);
   return fmt::format(R"(
 behavior: 1
 robot: {}
@@ -48,7 +53,7 @@ machine:
   states:
     hold:
       on_entry: [{{mark: step}}]
-      contacts: [right_foot, left_foot]
+      contacts: [{}]
       tasks:
         height: {{type: com_position, axes: [z], priority: 1, gains: {{kp: 200, kd: 20}}, reference: entry}}
         attitude: {{type: body_orientation, axes: [roll, pitch], priority: 1, gains: {{kp: 200, kd: 20}}, reference: entry}}
@@ -61,7 +66,7 @@ machine:
                      fault == core::fault_name(Fault::script_stuck)
                          ? "scripts: {files: slow.lua, deadline: 20 ms}\n"
                          : "",
-                     fault);
+                     fault, swings ? "right_foot" : "right_foot, left_foot");
 }
 
 // About half a second in one function of Lua's library, which counts no instructions.
@@ -70,8 +75,9 @@ constexpr const char* kSlowScript =
 
 // How a fault is provoked, and what is to be seen of it.
 struct Provocation {
-  std::function<void(hal::Sensors&)> spoil = nullptr;  // in each tick from kCause on ...
-  int spoiled = 1000;                                  // ... as many of them
+  std::function<void(hal::Sensors&)> spoil = nullptr;  // in each tick from `from` on ...
+  std::int64_t from = kCause;
+  int spoiled = 1000;                                                 // ... as many of them
   std::function<void(engine::ControlLoop&, Meddler&)> act = nullptr;  // before kCause
   int ticks = 1;               // in how many ticks `act` is repeated
   int delay = 0;               // ticks from the cause until it is found
@@ -89,6 +95,15 @@ void straighten_legs(hal::Sensors& s) {
   s.q_WB = {1.0, 0.0, 0.0, 0.0};
 }
 
+// The knees move the height with a lever of sin(0.05 deg).
+void bend_slightly(hal::Sensors& s) {
+  straighten_legs(s);
+  for (const std::size_t leg : {0U, 3U}) {
+    s.q[leg + 1] -= 0.05 * std::numbers::pi / 180.0;
+    s.q[leg + 2] += 0.1 * std::numbers::pi / 180.0;
+  }
+}
+
 void raise(engine::ControlLoop& loop, const char* event, int times) {
   for (int k = 0; k < times; ++k) loop.machine().raise(loop.behavior().find_event(event));
 }
@@ -100,10 +115,6 @@ Provocation provocation(Fault fault) {
     case Fault::non_finite:
       return {.spoil = [](hal::Sensors& s) { s.qd[3] = std::nan(""); }};
     case Fault::torque_limit:  // in one tick: if it lasts, the simulated robot falls
-      return {.spoil = [](hal::Sensors& s) { s.q[0] += 0.5; },
-              .spoiled = 1,
-              .after_machine = true,
-              .count = std::nullopt};
     case Fault::torque_step:
       return {.spoil = [](hal::Sensors& s) { s.q[0] += 0.5; },
               .spoiled = 1,
@@ -145,6 +156,11 @@ Provocation provocation(Fault fault) {
       return {.act = [](engine::ControlLoop& loop, Meddler&) { raise(loop, "hang", 1); },
               .delay = 1,
               .after_machine = true};
+    case Fault::swing_contact:  // since the first tick: beyond half of limits.swing in kCause
+      return {
+          .spoil = [](hal::Sensors& s) { s.contact[1] = true; }, .from = 0, .after_machine = true};
+    case Fault::condition:
+      return {.spoil = bend_slightly, .spoiled = 1, .after_machine = true};
     case Fault::count:
       break;
   }
@@ -186,7 +202,9 @@ class FaultReaction : public testing::TestWithParam<Case> {
     const auto [fault, reaction, mujoco] = GetParam();
     const std::string name(core::fault_name(fault));
     // Other provocations may make a foot of the simulated robot jump.
-    const char* swing = fault == Fault::swing_too_long ? "10 ms" : "1 s";
+    const std::string swing = fault == Fault::swing_too_long  ? "10 ms"
+                              : fault == Fault::swing_contact ? fmt::format("{} ms", kLoadedSwing)
+                                                              : "1 s";
     write("robot.yaml", fmt::format("robot: 1\nbase: {}/robots/hume/robot.yaml\n"
                                     "limits: {{swing: {}, overruns: {}}}\nfaults: {{{}: {}}}\n",
                                     fs::absolute(FOOTFALL_SOURCE_DIR).string(), swing, kLate, name,
@@ -224,7 +242,7 @@ class FaultReaction : public testing::TestWithParam<Case> {
     const auto real = backend();
     Meddler robot(*real);
     robot.spoil = [&](hal::Sensors& sensors, std::int64_t tick) {
-      if (what.spoil && tick >= kCause && tick < kCause + what.spoiled) what.spoil(sensors);
+      if (what.spoil && tick >= what.from && tick < what.from + what.spoiled) what.spoil(sensors);
     };
     engine::ControlLoop loop(*behavior_, robot, {});
     lab::RunSpec spec;

@@ -41,6 +41,25 @@ void run(StubRig& rig, int ticks) {
   }
 }
 
+// Rows that leave their level by their weight take their rank along: nothing is lost.
+TEST(Faults, ARankThatGoesWithItsWeightIsNotLost) {
+  for (const char* weight : {"0", "'= time < 10 ms ? 1 : 0'", "'= time < 10 ms ? 0 : 1'"}) {
+    StubRig rig(
+        "behavior: 1\nrobot: hume\nmachine:\n  contacts: [right_foot, left_foot]\n  tasks:\n"
+        "    com: {type: com_position, reference: entry, gains: {kp: 1}, weight: [" +
+            std::string(weight) + ", " + weight +
+            ", 1]}\n"
+            "    attitude: {type: body_orientation, reference: entry, gains: {kp: 1}}\n"
+            "    rest: {type: joint_damping, priority: 2, gains: {kd: 2}}\n"
+            "  states: {hold: {doc: here}}\n",
+        kHeavy);
+    rig.loop->start();
+    run(rig, 40);
+    EXPECT_EQ(rig.faults(Fault::rank_loss), 0) << weight;
+    EXPECT_EQ(rig.faults(Fault::non_finite), 0) << weight;
+  }
+}
+
 class NotANumber : public testing::TestWithParam<double> {};
 
 TEST_P(NotANumber, IsCountedOnceAndStopsARobotThatSaysSo) {

@@ -1,5 +1,5 @@
-// Values of expressions before a run; see values.h.
-#include "behaviors/check/physics/values.h"
+// Values of expressions before a run; see static_values.h.
+#include "behaviors/compiled/static_values.h"
 
 #include <algorithm>
 #include <cmath>

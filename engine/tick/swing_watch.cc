@@ -1,0 +1,53 @@
+// Phases of the feet; see swing_watch.h.
+#include "engine/tick/swing_watch.h"
+
+#include <algorithm>
+
+#include "core/index.h"
+
+namespace footfall::engine {
+namespace {
+
+bool contains(const std::vector<int>& list, int value) noexcept {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+// Whether the law relies on the contact, or is loading it.
+bool holds(const behaviors::Behavior& behavior, const behaviors::ControlSpec& control,
+           int contact) noexcept {
+  if (contains(control.contacts, contact)) return true;
+  if (control.transition < 0) return false;
+  const behaviors::TransitionSpec& transition =
+      behavior.contact_transitions[at(control.transition)];
+  return transition.loads && contains(transition.contacts, contact);
+}
+
+}  // namespace
+
+FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool stepping) noexcept {
+  FaultFindings findings;
+  const behaviors::ControlSpec& spec = behavior_.controls[at(control)];
+  const model::RobotDescription& robot = behavior_.robot;
+  const double period = robot.period_s();
+  for (int c = 0; c < static_cast<int>(robot.contacts.size()); ++c) {
+    Phase& phase = phases_[at(c)];
+    const bool held = holds(behavior_, spec, c);
+    if (!stepping || held || spec.contacts.empty()) {
+      const std::int64_t excess = 2 * phase.loaded - phase.ticks;
+      if (held && excess > 0) {
+        findings.add(core::Fault::swing_contact, {c, static_cast<double>(phase.loaded) * period,
+                                                  0.5 * static_cast<double>(excess) * period});
+      }
+      phase = {};
+      continue;
+    }
+    ++phase.ticks;
+    if (sensors.contact[at(c)]) ++phase.loaded;
+    const double loaded = static_cast<double>(phase.loaded) * period;
+    if (loaded <= 0.5 * robot.swing_limit) continue;
+    findings.add(core::Fault::swing_contact, {c, loaded, loaded - 0.5 * robot.swing_limit});
+  }
+  return findings;
+}
+
+}  // namespace footfall::engine
