@@ -45,11 +45,15 @@ constexpr std::string_view fault_name(Fault fault) {
   return names[static_cast<std::size_t>(fault)];
 }
 
-// Fault counters of one run.
+// Fault counters of one run: how often each appeared, and in how many ticks it was there.
 struct FaultCounters {
-  std::array<std::int64_t, kFaultCount> count{};
+  std::array<std::int64_t, kFaultCount> count{}, ticks{};
   void add(Fault fault) noexcept { ++count[static_cast<std::size_t>(fault)]; }
+  void add_tick(Fault fault) noexcept { ++ticks[static_cast<std::size_t>(fault)]; }
   std::int64_t of(Fault fault) const noexcept { return count[static_cast<std::size_t>(fault)]; }
+  std::int64_t ticks_of(Fault fault) const noexcept {
+    return ticks[static_cast<std::size_t>(fault)];
+  }
 };
 
 }  // namespace footfall::core

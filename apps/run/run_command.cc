@@ -37,6 +37,11 @@ void schedule_pushes(const RunOptions& options, Backend& backend, lab::RunSpec& 
     lab::ScheduledEvent event;
     if (const auto* time = std::get_if<sim::AtTime>(&push->at)) {
       event.at_time = time->seconds;
+      if (options.duration > 0.0 && time->seconds >= options.duration) {
+        throw InputError(
+            fmt::format("--push: error: {:g} s is after the run's end at {:g} s (--for)",
+                        time->seconds, options.duration));
+      }
     } else {
       event.at_step = std::get<sim::AtStep>(push->at).step;
       event.phase = std::get<sim::AtStep>(push->at).phase;

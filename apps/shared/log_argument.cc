@@ -34,6 +34,14 @@ lab::Log read_whole_log(const std::string& argument) {
     std::fprintf(stderr, "warning: the log '%s' was cut off; it has %lld ticks\n", log.path.c_str(),
                  static_cast<long long>(ticks));
   }
+  if (log.inputs.after_gap > 0) {
+    std::fprintf(stderr,
+                 "warning: the log '%s' has a gap at tick %lld: the machine was too slow to write "
+                 "it; the %lld ticks after it cannot be repeated\n",
+                 log.path.c_str(),
+                 static_cast<long long>(log.inputs.first_tick + log.inputs.ticks()),
+                 static_cast<long long>(log.inputs.after_gap));
+  }
   return log;
 }
 

@@ -89,6 +89,7 @@ struct LogWriter::Impl {
   std::atomic<std::uint32_t> filled{0}, written{0};
   std::atomic<bool> ending{false};
   std::int64_t dropped = 0;   // ticks dropped since the queue became full
+  std::int64_t lost = 0;      // in all
   Clock::time_point started;  // start of the current batch
   std::thread thread;
 };
@@ -188,6 +189,7 @@ void LogWriter::tick(std::int64_t tick, const hal::Sensors& sensors, bool fresh,
   Impl& m = *impl_;
   if (!m.room()) {
     ++m.dropped;
+    ++m.lost;
     return;
   }
   if (m.dropped > 0) {
@@ -200,6 +202,7 @@ void LogWriter::tick(std::int64_t tick, const hal::Sensors& sensors, bool fresh,
     m.hand_over();
     if (!m.room()) {
       ++m.dropped;
+      ++m.lost;
       return;
     }
   }
@@ -282,6 +285,8 @@ void LogWriter::close() {
   }
   impl_->encoder.close();
 }
+
+std::int64_t LogWriter::lost() const noexcept { return impl_->lost; }
 
 bool LogWriter::failed() const noexcept { return impl_->encoder.failed(); }
 

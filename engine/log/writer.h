@@ -70,6 +70,8 @@ class LogWriter {
   // Completes the file. Throws std::runtime_error if any write failed. Also called by the
   // destructor, which ignores errors.
   void close();
+  // Ticks that are not in the log, because writing them was too slow (never in lock-step).
+  std::int64_t lost() const noexcept;
   // Whether a write failed (e.g. disk full); close() reports the error.
   bool failed() const noexcept;
 

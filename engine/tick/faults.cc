@@ -23,6 +23,7 @@ void FaultMonitor::take(const FaultFindings& findings, behaviors::Machine& machi
       last_place_[f] = place;
       react(static_cast<Fault>(f), machine);
     }
+    if (!seen_[f]) counters_.add_tick(static_cast<Fault>(f));
     seen_[f] = true;
   }
 }
@@ -33,6 +34,7 @@ void FaultMonitor::take_counts(behaviors::Machine& machine) noexcept {
     const std::int64_t count = machine.faults().count[index] - of_machine_.count[index];
     if (count == 0) continue;
     counters_.count[index] += count;
+    counters_.add_tick(fault);
     react(fault, machine);
   }
   of_machine_ = machine.faults();
@@ -42,6 +44,7 @@ void FaultMonitor::take_late(bool late, behaviors::Machine& machine) noexcept {
   overruns_ = late ? overruns_ + 1 : 0;
   if (!late) return;
   counters_.add(Fault::tick_overrun);
+  counters_.add_tick(Fault::tick_overrun);
   if (overruns_ == behavior_.robot.overruns) react(Fault::tick_overrun, machine);
 }
 

@@ -63,6 +63,7 @@ class ScenarioJudge {
   void observe_that(Judged& judged);
   void observe_sequence(Judged& judged);
   void update(Running& running);
+  std::string not_reached() const;
   void finish_that(Judged& judged, ExpectationOutcome& out);
   void finish_sequence(const Judged& judged, ExpectationOutcome& out);
   void finish_end(const Judged& judged, RunEnd end, ExpectationOutcome& out) const;

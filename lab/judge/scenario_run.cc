@@ -84,6 +84,7 @@ ScenarioRun run_scenario(const ScenarioDescription& scenario, std::uint64_t seed
     outcome.why = fmt::format("the run ended by {} at {:.3f} s, in {}", outcome.end, loop.time(),
                               stage.judge.last_state());
   }
+  if (outcome.why.empty()) outcome.why = stage.cues.missed();
   if (stage.recorder) {
     out.trace = stage.recorder->trace();
     if (seed == scenario.seeds.front()) {

@@ -19,6 +19,15 @@ std::string fault_word(InjectedFault fault) {
   return std::string(kInjectedFaults[static_cast<std::size_t>(fault)].word);
 }
 
+const char* what_of(const ScriptEntry& entry) {
+  if (entry.push) return "push";
+  if (!entry.edit.empty()) return "edit";
+  if (!entry.set.empty()) return "new values";
+  if (entry.raise >= 0) return "event";
+  if (entry.fault) return "fault";
+  return entry.hold.empty() ? "call" : "hold";
+}
+
 }  // namespace
 
 std::vector<std::string> unsupported(const ScenarioDescription& scenario,
@@ -96,12 +105,23 @@ void ScenarioCues::fire(const StepClock& steps, RunLog& log) {
   end_lasting(log);
   for (Cue& cue : cues_) {
     if (!cue.events.empty()) {
+      cue.done |= cue.heard > 0;
       for (; cue.heard > 0; --cue.heard) act(*cue.entry, log);
     } else if (!cue.done && due(cue, steps)) {
       cue.done = true;
       act(*cue.entry, log);
     }
   }
+}
+
+std::string ScenarioCues::missed() const {
+  for (const Cue& cue : cues_) {
+    if (cue.done || cue.entry->optional) continue;
+    return fmt::format(
+        "{}: the {} never came: the run ended at {:.3f} s (`optional: true` allows it)",
+        place_of(*cue.entry), what_of(*cue.entry), loop_.time());
+  }
+  return {};
 }
 
 bool ScenarioCues::due(const Cue& cue, const StepClock& steps) const {

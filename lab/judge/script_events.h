@@ -46,11 +46,13 @@ class ScenarioCues {
   void observe();
   // What could not be done at its moment; empty: nothing.
   const std::string& problem() const { return problem_; }
+  // The first entry whose moment never came, in words; empty: all came, or may be missing.
+  std::string missed() const;
 
  private:
   struct Cue {
     const ScriptEntry* entry = nullptr;
-    bool done = false;
+    bool done = false;         // at least once
     std::vector<bool> events;  // by event: fires at it
     int heard = 0;             // events of the last tick
   };

@@ -45,8 +45,12 @@ std::vector<ExpectationOutcome> ScenarioJudge::finish(RunEnd end) {
         finish_that(judged, out);
         break;
       case Expectation::Kind::never:
-        out.passed = !judged.decided;
+        out.passed = judged.judged && !judged.decided;
         if (out.passed) break;
+        if (!judged.judged) {
+          out.why = not_reached();
+          break;
+        }
         out.why = "it held";
         tell_place(judged.place, out);
         tell_values(judged, out);
@@ -62,6 +66,10 @@ std::vector<ExpectationOutcome> ScenarioJudge::finish(RunEnd end) {
   return outcomes;
 }
 
+std::string ScenarioJudge::not_reached() const {
+  return fmt::format("the run ended at {:.3f} s, before it could be judged", loop_.time());
+}
+
 void ScenarioJudge::finish_that(Judged& judged, ExpectationOutcome& out) {
   if (judged.at_end) {
     judged.judged = true;
@@ -73,7 +81,7 @@ void ScenarioJudge::finish_that(Judged& judged, ExpectationOutcome& out) {
       !judged.at_end && judged.statistics.empty() && !judged.expectation->within;
   out.passed = judged.judged && (every_tick ? !judged.decided : judged.holds);
   if (!judged.judged) {
-    out.why = fmt::format("the run ended at {:.3f} s, before it could be judged", loop_.time());
+    out.why = not_reached();
     return;
   }
   if (out.passed && every_tick) return;  // no one tick speaks for all

@@ -181,7 +181,10 @@ void Reader::inputs(const Block& block) {
   }
   if (!options_.inputs) return;
   if (inputs.digest.empty()) inputs.first_tick = block.first_tick;
-  if (inputs.first_tick + inputs.ticks() != block.first_tick) return;  // after a gap
+  if (inputs.first_tick + inputs.ticks() != block.first_tick) {
+    inputs.after_gap += block.ticks;
+    return;
+  }
   for (int k = 0; k < block.ticks; ++k) {
     for (int c = 0; c < columns; ++c) inputs.words.push_back(input_codec_->column(c)[k]);
   }

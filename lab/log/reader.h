@@ -67,6 +67,7 @@ struct LoggedInputs {
   std::int64_t first_tick = 0;
   std::vector<std::uint64_t> words;   // ticks x columns
   std::vector<std::uint64_t> digest;  // digest of all signals, by tick
+  std::int64_t after_gap = 0;         // ticks of the log that follow a gap, and are not here
 
   std::int64_t ticks() const { return static_cast<std::int64_t>(digest.size()); }
   const std::uint64_t* row(std::int64_t tick) const {

@@ -15,6 +15,7 @@
 #include "engine/tick/input_row.h"
 #include "lab/log/attached_files.h"
 #include "lab/run/log_setup.h"
+#include "lab/run/run_log.h"
 
 namespace footfall::lab {
 namespace {
@@ -170,6 +171,12 @@ struct Replay::Impl {
 };
 
 Replay::Replay(const Log& log, const std::string& behavior_file) : impl_(std::make_unique<Impl>()) {
+  if (log.get("format", "1") != std::to_string(kLogFormat)) {
+    throw std::runtime_error(fmt::format(
+        "the log '{}' has format {}, made by version {} of this program: only format {} can be "
+        "repeated here (events, report and export read it)",
+        log.path, log.get("format", "1"), log.get("version", "?"), kLogFormat));
+  }
   impl_->now = std::make_unique<ReplayStage>(log, behavior_file);
   if (impl_->now->setup.continues.number > 0) {
     throw std::runtime_error(

@@ -12,6 +12,29 @@ namespace {
 constexpr std::size_t kRecent = 51;  // 50 whole steps
 constexpr std::size_t kGoalSteps = 10;
 
+// The running mean of the placement errors, and the largest.
+void add_placement(RunFigures& sums, double error) noexcept {
+  ++sums.placements;
+  sums.placement_mean += (error - sums.placement_mean) / static_cast<double>(sums.placements);
+  sums.placement_max = std::max(sums.placement_max, error);
+}
+
+// What counts from a time on; the rest of the figures is of the whole run in any case.
+void take_errors(const RunFigures& from, RunFigures& to) {
+  to.counted_from = from.counted_from;
+  to.roll = from.roll;
+  to.pitch = from.pitch;
+  to.yaw = from.yaw;
+  to.height = from.height;
+  to.placement_mean = from.placement_mean;
+  to.placement_max = from.placement_max;
+  to.placements = from.placements;
+  to.max_torque_step = from.max_torque_step;
+  to.end_torque_step = from.end_torque_step;
+  to.peak_torque = from.peak_torque;
+  to.internal = from.internal;
+}
+
 double wrap(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
 }  // namespace
@@ -30,6 +53,7 @@ RunMetrics::RunMetrics(const engine::ControlLoop& loop)
     : loop_(&loop),
       counter_(static_cast<int>(loop.behavior().robot.contacts.size()), loop.period()) {
   recent_.resize(kRecent);
+  sums_.counted_from = kSettledAfter;
 }
 
 StepEvent RunMetrics::observe(const std::array<double, 2>& goal) noexcept {
@@ -65,29 +89,33 @@ void RunMetrics::observe_errors() noexcept {
       }
     }
   }
-  if (loop_->time() < kSettledAfter) return;
+  add_errors(whole_);
+  if (loop_->time() >= kSettledAfter) add_errors(sums_);
+}
+
+void RunMetrics::add_errors(RunFigures& sums) noexcept {
+  const tasks::ControlSet& set = loop_->machine().control().primary;
   const auto& rpy = loop_->model().rpy();
-  sums_.roll.add(wrap(rpy[0] - orientation_ref_[0]));
-  sums_.pitch.add(wrap(rpy[1] - orientation_ref_[1]));
-  sums_.yaw.add(wrap(rpy[2] - orientation_ref_[2]));
-  if (have_height_ref_) sums_.height.add(loop_->model().com().position[2] - height_ref_);
+  sums.roll.add(wrap(rpy[0] - orientation_ref_[0]));
+  sums.pitch.add(wrap(rpy[1] - orientation_ref_[1]));
+  sums.yaw.add(wrap(rpy[2] - orientation_ref_[2]));
+  if (have_height_ref_) sums.height.add(loop_->model().com().position[2] - height_ref_);
   const core::SignalTable& signals = loop_->signals();
   const behaviors::SignalLayout& layout = loop_->behavior().layout;
   // The tick that ends the run takes the control away or hands it to the safe state; what counts
   // against the behavior is how its own torque moved.
   if (loop_->state() == engine::LoopState::running) {
-    sums_.max_torque_step = std::max(sums_.max_torque_step, signals[layout.torque_step]);
+    sums.max_torque_step = std::max(sums.max_torque_step, signals[layout.torque_step]);
   } else {
-    sums_.end_torque_step = signals[layout.torque_step];
+    sums.end_torque_step = signals[layout.torque_step];
   }
   for (int j = 0; j < loop_->model().joint_count(); ++j) {
-    sums_.peak_torque = std::max(sums_.peak_torque, std::abs(loop_->commands().tau[at(j)]));
+    sums.peak_torque = std::max(sums.peak_torque, std::abs(loop_->commands().tau[at(j)]));
   }
   const tasks::ControllerResult& result = loop_->controller().result();
   for (int i = 0; i < set.internal_count; ++i) {
     const tasks::InternalCommand& c = set.internals[at(i)];
-    RunFigures::Internal& out =
-        sums_.internal[loop_->behavior().internal_instances[at(c.instance)]];
+    RunFigures::Internal& out = sums.internal[loop_->behavior().internal_instances[at(c.instance)]];
     out.reference = c.reference;
     out.error.add(result.internal_measured[at(i)] - c.reference);
   }
@@ -96,16 +124,15 @@ void RunMetrics::observe_errors() noexcept {
 // Touchdown minus the last planned target of the foot placement planner.
 void RunMetrics::observe_placement() noexcept {
   const behaviors::SignalLayout& layout = loop_->behavior().layout;
-  if (layout.planner.empty() || loop_->time() < kSettledAfter) return;
+  if (layout.planner.empty()) return;
   const core::SignalTable& signals = loop_->signals();
   for (int f = 0; f < loop_->model().contact_count(); ++f) {
     if (!counter_.touched_down(f)) continue;
     const auto& p = loop_->model().point(f).position;
     const int target = layout.planner.front().target;
     const double error = std::hypot(p[0] - signals[target], p[1] - signals[target + 1]);
-    placement_sum_ += error;
-    ++sums_.placements;
-    sums_.placement_max = std::max(sums_.placement_max, error);
+    add_placement(whole_, error);
+    if (loop_->time() >= kSettledAfter) add_placement(sums_, error);
   }
 }
 
@@ -121,12 +148,12 @@ void RunMetrics::observe_step(const StepEvent&, const std::array<double, 2>& goa
 
 RunFigures RunMetrics::figures(bool fell) const {
   RunFigures f = sums_;
+  if (loop_->time() < kShortRun) take_errors(whole_, f);
   f.steps = counter_.steps();
   f.time = loop_->time();
   f.end = last_com_;
   f.fell = fell;
   f.worst_clearance = f.steps > 0 ? counter_.worst_clearance() : 0.0;
-  if (f.placements > 0) f.placement_mean = placement_sum_ / static_cast<double>(f.placements);
   const auto count = static_cast<std::size_t>(std::min<std::int64_t>(f.steps, kRecent));
   const auto sample = [&](std::size_t back) {  // 0: the last step
     return recent_[(recent_head_ + kRecent - 1 - back) % kRecent];

@@ -27,6 +27,7 @@ struct ErrorFigure {
 struct RunFigures {
   std::int64_t steps = 0;
   double time = 0.0;
+  double counted_from = 0.0;  // s: errors, placements and torques count from here on
   bool fell = false;
   ErrorFigure roll, pitch, yaw, height;
   double placement_mean = 0.0, placement_max = 0.0;
@@ -48,8 +49,10 @@ struct RunFigures {
   std::map<std::string, Internal> internal;
 };
 
-// Error figures and torque steps count from here on.
+// Error figures and torques count from here on, when the start has died away; in runs shorter than
+// kShortRun from the beginning, because nothing much would be left.
 inline constexpr double kSettledAfter = 2.0;  // s
+inline constexpr double kShortRun = 4.0;      // s
 
 class RunMetrics {
  public:
@@ -68,12 +71,14 @@ class RunMetrics {
 
  private:
   void observe_errors() noexcept;
+  void add_errors(RunFigures& sums) noexcept;
   void observe_placement() noexcept;
   void observe_step(const StepEvent& event, const std::array<double, 2>& goal) noexcept;
 
   const engine::ControlLoop* loop_;
   StepCounter counter_;
-  RunFigures sums_;
+  RunFigures sums_;   // errors from kSettledAfter on
+  RunFigures whole_;  // errors from the beginning; nothing else
   struct StepSample {
     double time;
     std::array<double, 2> com;
@@ -87,7 +92,6 @@ class RunMetrics {
   double height_ref_ = 0.0;
   bool have_height_ref_ = false;
   bool first_ = true;
-  double placement_sum_ = 0.0;
 };
 
 }  // namespace footfall::lab

@@ -232,6 +232,10 @@ RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
   result.tick_time = executive.tick_time();
   if (spec.allocations) result.allocations = spec.allocations();
   result.reloads = executive.exchanges();
+  if (spec.log != nullptr) result.log_lost = spec.log->lost();
+  for (const ScheduledEvent& event : spec.events) {
+    if (event.fire) result.missed.push_back(event.label);
+  }
   recorder.log().event("end", run_end_name(result.end), result.cause ? result.cause->text : "");
   return result;
 }

@@ -88,7 +88,9 @@ struct RunResult {
   std::int64_t allocations = -1;  // within ticks; -1: not counted
   double real_time_factor = 0.0;
   double wall_time = 0.0;
-  int reloads = 0;  // done, those taken back counted twice
+  int reloads = 0;                  // done, those taken back counted twice
+  std::int64_t log_lost = 0;        // ticks that are not in the log
+  std::vector<std::string> missed;  // scheduled events whose moment never came
 };
 
 // Runs from start to end. Throws what engine::Executive::run() throws, and std::runtime_error if

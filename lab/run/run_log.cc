@@ -186,6 +186,7 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
                 {"backend", source.backend},
                 {"seed", std::to_string(source.settings.seed)},
                 {"version", kVersion},
+                {"format", std::to_string(kLogFormat)},
                 {"build", build_id()},
                 {"command", source.command},
                 {"model", behavior.robot.model_path},

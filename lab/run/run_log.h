@@ -16,6 +16,11 @@
 
 namespace footfall::lab {
 
+// Of logs: the key `format` of the metadata `run`; logs without one are of format 1. A replay wants
+// the present one: a reader reads all. 2 has scripts_stuck among the inputs, and faults of 19
+// kinds.
+inline constexpr int kLogFormat = 2;
+
 class RunLog {
  public:
   using Said = std::function<void(double time, const std::string& text)>;

@@ -27,6 +27,16 @@ Json faults_json(const core::FaultCounters& faults) {
   return out;
 }
 
+// Ticks in which each was there: a fault that stays has appeared once.
+Json fault_ticks_json(const core::FaultCounters& faults) {
+  Json out = Json::object();
+  for (int i = 0; i < core::kFaultCount; ++i) {
+    const auto fault = static_cast<core::Fault>(i);
+    if (faults.of(fault) > 0) out[std::string(core::fault_name(fault))] = faults.ticks_of(fault);
+  }
+  return out;
+}
+
 Json internal_json(const RunFigures& figures) {
   Json out = Json::object();
   for (const auto& [name, force] : figures.internal) {
@@ -77,7 +87,7 @@ std::string torque_text(const RunFigures& f) {
     text += fmt::format("peak {:.1f} Nm, largest step between ticks {:.2f} Nm", f.peak_torque,
                         f.max_torque_step);
   } else {
-    text += fmt::format("not counted before {:g} s", kSettledAfter);
+    text += "no tick was made";
   }
   if (f.end_torque_step > 0.0) {
     text += fmt::format("; {:.2f} Nm as the run ended", f.end_torque_step);
@@ -101,6 +111,9 @@ std::string faults_text(const RunResult& result) {
     if (result.faults.of(fault) == 0) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", core::fault_name(fault),
                         result.faults.of(fault));
+    if (result.faults.ticks_of(fault) > result.faults.of(fault)) {
+      text += fmt::format(" in {} ticks", result.faults.ticks_of(fault));
+    }
     for (const WorstFault& worst : result.worst) {
       if (worst.fault != fault) continue;
       text += fmt::format(" (worst {} {:.3g}{}{})", worst.joint, worst.value,
@@ -156,6 +169,7 @@ std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& beh
 Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_only) {
   const RunFigures& f = result.figures;
   Json out;
+  out["format"] = kSummaryFormat;
   out["behavior"] = id.behavior;
   out["robot"] = id.robot;
   out["world"] = id.world;
@@ -171,13 +185,15 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
                   {"height", error_json(f.height)}};
   out["foot_placement_m"] =
       f.placements > 0 ? Json{{"mean", f.placement_mean}, {"max", f.placement_max}} : Json();
-  const bool settled = f.roll.count > 0;  // the run was long enough for these to count
+  const bool settled = f.roll.count > 0;  // there was a tick
   out["max_torque_step_Nm"] = settled ? Json(f.max_torque_step) : Json();
   out["peak_torque_Nm"] = settled ? Json(f.peak_torque) : Json();
   out["goal_error_m"] = f.steps > 0 ? Json(f.goal_error) : Json();
   out["path_length_m"] = f.path_length;
   out["internal_force"] = internal_json(f);
   out["faults"] = faults_json(result.faults);
+  out["fault_ticks"] = fault_ticks_json(result.faults);
+  out["counted_from_s"] = f.counted_from;
   out["start_m"] = f.start;
   out["end_m"] = f.end;
   out["moved_m"] = moved(f);
@@ -188,6 +204,8 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["marked_steps"] = result.marked_steps;
   out["unused_torque_loops"] = torque_loops_json(id);
   out["max_distance_m"] = f.max_distance;
+  out["missed"] = result.missed;
+  out["log_lost_ticks"] = result.log_lost;
   out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
   out["clearance_min_m"] = f.steps > 0 ? Json(f.worst_clearance) : Json();
   out["mean_step_time_s"] = f.steps > 1 ? Json(f.mean_step_time) : Json();
@@ -246,6 +264,13 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
         fmt::format("  {}  {:.1f} N rms from {:.1f} N\n", name, force.error.rms(), force.reference);
   }
   text += faults_text(result);
+  for (const std::string& event : result.missed) {
+    text += fmt::format("  NEVER CAME   {}\n", event);
+  }
+  if (result.log_lost > 0) {
+    text += fmt::format("  LOG LOST     {} ticks: the machine was too slow to write them\n",
+                        result.log_lost);
+  }
   text += fmt::format("  tick         {:.1f} us median, {:.1f} us p99.9; {:.0f} x real time\n",
                       result.tick_time.percentile(0.5) * 1e-3,
                       result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);

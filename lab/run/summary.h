@@ -19,6 +19,10 @@ struct UnusedTorqueLoop {
 std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& behavior,
                                                   const hal::Hardware& hardware);
 
+// Of summary.json and `--json`: the key `format`. 2 counts runs under 4 s from the beginning, and
+// has fault_ticks.
+inline constexpr int kSummaryFormat = 2;
+
 struct RunIdentity {
   std::string behavior, robot, world, backend;
   std::uint64_t seed = 0;

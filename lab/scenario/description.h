@@ -54,6 +54,7 @@ struct ScriptEntry {
   std::string hold;                // body to hold; empty: none
   std::string call;                // function of ScenarioDescription::scripts to call; empty: none
   std::optional<double> duration;  // s, of a fault or hold; nullopt: to the end
+  bool optional = false;           // the run may end before it comes
 };
 
 // A statistic of a signal over the judged time.

@@ -61,6 +61,9 @@ constexpr KeySpec kScriptRows[] = {
     key("call", name_of("a Lua function"),
         "a function of `scripts`: it sets values without ramp, and raises external events"),
     key("for", quantity(kTime), "duration of `fault` or `hold`").otherwise("to the end of the run"),
+    key("optional", boolean(),
+        "whether the run may end before this comes; otherwise a run in which it never came fails")
+        .otherwise("false"),
     key("doc", text_of("a text"), "reason, in one line"),
 };
 

@@ -258,6 +258,9 @@ void read_entry(ScenarioContext& context, const YamlNode& node) {
   core::check_keys(node, kScriptKeys, context.diagnostics);
   ScriptEntry entry;
   entry.mark = node.mark;
+  if (const YamlNode* optional = node.find("optional")) {
+    entry.optional = core::read_bool(*optional, context.diagnostics).value_or(false);
+  }
   read_moment(context, node, entry.moment);
   const std::vector<std::string> actions = {"push",  "edit", "set", "raise",
                                             "fault", "hold", "call"};

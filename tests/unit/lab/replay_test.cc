@@ -234,10 +234,29 @@ TEST_F(Workshop, AGuardIsExplainedByItsTerms) {
   EXPECT_NE(text.find("when  t 0.05 s > $patience 2 s   <- no\n"), std::string::npos) << text;
 }
 
+// tests/data has a small log of each format before this one.
+TEST(LogFormats, LogsOfFormersAreReadAndNotRepeated) {
+  const std::string path = FOOTFALL_SOURCE_DIR "/tests/data/log_format_1.mcap";
+  const lab::Log log = lab::read_log(path, {.all_rows = true, .inputs = true});
+  EXPECT_EQ(log.get("behavior"), "nod");
+  EXPECT_EQ(log.get("format", "1"), "1");
+  EXPECT_EQ(log.inputs.ticks(), 91);  // 60 ms at 1500 Hz, and what start() read
+  ASSERT_NE(log.values("com.pos.z"), nullptr);
+  EXPECT_NEAR(log.values("com.pos.z")->front(), 0.911, 1e-3);
+  try {
+    lab::Replay replay(log);
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("only format 2 can be repeated"), std::string::npos);
+  }
+}
+
 TEST_F(Workshop, WhatIsNoLogOfARunIsOneSentence) {
   core::SignalTable table;
   table.add("time", core::kTime, "");
-  engine::LogWriter(path("d.mcap"), table, {}).close();
+  engine::LogHeader header;
+  header.run = {{"format", std::to_string(lab::kLogFormat)}};
+  engine::LogWriter(path("d.mcap"), table, header).close();
   const lab::Log log = lab::read_log(path("d.mcap"), {.all_rows = true, .inputs = true});
   try {
     lab::Replay replay(log);

@@ -47,12 +47,16 @@ class ScenarioRunTest : public testing::Test {
                 ("footfall_scenario_" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "laps.yaml") << kLaps;
+    std::ofstream(folder_ / "short.yaml")
+        << "base: laps.yaml\nmachine:\n  transitions+: [{after: 200 ms, to: over}]\n"
+           "  states: {over: {type: final}}\n";
   }
   ~ScenarioRunTest() override { std::filesystem::remove_all(folder_); }
 
   // Runs a scenario of these lines for 0.6 s: 900 ticks.
   ScenarioRun run(const std::string& lines, std::uint64_t seed = 1) {
-    std::ofstream(folder_ / "s.yaml") << "scenario: 1\nbehavior: laps.yaml\nfor: 600 ms\n" << lines;
+    std::ofstream(folder_ / "s.yaml") << "scenario: 1\nbehavior: " << file_ << "\nfor: 600 ms\n"
+                                      << lines;
     core::Diagnostics diagnostics;
     scenario_ = load_scenario((folder_ / "s.yaml").string(), {{FOOTFALL_SOURCE_DIR}}, diagnostics);
     EXPECT_EQ(diagnostics.to_string(), "");
@@ -89,6 +93,7 @@ class ScenarioRunTest : public testing::Test {
   }
 
   using Act = std::pair<std::int64_t, std::string>;
+  std::string file_ = "laps.yaml";
   std::filesystem::path folder_;
   ScenarioDescription scenario_;
   std::vector<Act> acts_;
@@ -169,6 +174,37 @@ TEST_F(ScenarioRunTest, AFaultOfASensorIsReportedAndEnds) {
   EXPECT_TRUE(done.outcome.passed) << done.outcome.why;
   EXPECT_EQ(acts_, (std::vector<Act>{{150, "fails"}, {165, "works"}}));
   EXPECT_EQ(done.run.faults.of(core::Fault::imu_stale), 1);
+}
+
+// A push that never came says nothing of the robot: such a run has not passed.
+TEST_F(ScenarioRunTest, AnEntryThatNeverCameFailsTheRunUnlessItIsOptional) {
+  file_ = "short.yaml";  // over after 0.2 s
+  for (const char* entry :
+       {"{at: 300 ms, push: {force: 40 N, for: 100 ms}}",
+        "{at: {step: 8}, push: {force: 40 N, for: 100 ms}}", "{at: {state: gone}, raise: tapped}",
+        "{on: tapped, set: {stiff: 3}}", "{at: 400 ms, edit: {lap: 90 ms}}",
+        "{at: 400 ms, fault: imu.dropout}", "{at: 400 ms, hold: torso}"}) {
+    const ScenarioRun missed = run(std::string("script:\n  - ") + entry + "\n");
+    EXPECT_FALSE(missed.outcome.passed) << entry;
+    EXPECT_NE(missed.outcome.why.find("s.yaml:5:5: the "), std::string::npos) << missed.outcome.why;
+    EXPECT_NE(missed.outcome.why.find(" never came: the run ended at 0.201 s"), std::string::npos)
+        << missed.outcome.why;
+    const std::string optional = std::string(entry).insert(1, "optional: true, ");
+    EXPECT_TRUE(run("script:\n  - " + optional + "\n").outcome.passed) << optional;
+  }
+}
+
+TEST_F(ScenarioRunTest, AWindowThatTheRunDoesNotReachIsNotJudgedAsPassed) {
+  file_ = "short.yaml";  // over after 0.2 s
+  for (const char* condition : {"{never: \"base.pos.z > 0 m\", between: [300 ms, 400 ms]}",
+                                "{that: \"base.pos.z > 0 m\", between: [300 ms, 400 ms]}",
+                                "{never: in(gone), after: 300 ms}"}) {
+    const ScenarioRun done = run(std::string("expect:\n  - ") + condition + "\n");
+    EXPECT_FALSE(done.outcome.passed) << condition;
+    EXPECT_EQ(done.outcome.expectations[0].why,
+              "the run ended at 0.201 s, before it could be judged")
+        << condition;
+  }
 }
 
 TEST_F(ScenarioRunTest, ALoneConditionIsJudgedAtTheEnd) {
