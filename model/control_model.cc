@@ -66,12 +66,21 @@ void apply_deviation(mjModel* m, mjData* d, const RobotDescription& robot,
     m->body_mass[b] *= deviation.mass_scale;
     for (int k = 0; k < 3; ++k) m->body_inertia[3 * b + k] *= deviation.mass_scale;
   }
-  for (const auto& [link, shift] : deviation.com_shift) {
+  const auto body = [&](const std::string& link) {
     const int b = mj_name2id(m, mjOBJ_BODY, link.c_str());
     if (b < 0) {
       throw std::runtime_error("control_model.com: " + robot.model_path + " has no link '" + link +
                                "'");
     }
+    return b;
+  };
+  for (const auto& [link, scale] : deviation.mass_scales) {
+    const int b = body(link);
+    m->body_mass[b] *= scale;
+    for (int k = 0; k < 3; ++k) m->body_inertia[3 * b + k] *= scale;
+  }
+  for (const auto& [link, shift] : deviation.com_shift) {
+    const int b = body(link);
     for (std::size_t k = 0; k < 3; ++k) m->body_ipos[3 * b + static_cast<int>(k)] += shift[k];
   }
   mj_setConst(m, d);

@@ -20,6 +20,7 @@ namespace footfall::model {
 // What the controller believes differently from the robot's file.
 struct ModelDeviation {
   double mass_scale = 1.0;                                 // every mass and inertia
+  std::map<std::string, double> mass_scales;               // likewise, of single links
   std::map<std::string, std::array<double, 3>> com_shift;  // m, link frame
 };
 

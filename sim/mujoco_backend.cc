@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 
 #include "core/index.h"
@@ -32,12 +31,11 @@ int foot_geom(const mjModel* m, const mjData* d, int site) {
 }  // namespace
 
 MujocoBackend::MujocoBackend(Empty, const model::RobotDescription& robot,
-                             const WorldDescription& world, std::uint64_t seed)
-    : robot_(robot), world_(world), seed_(seed) {}
+                             const WorldDescription& world)
+    : robot_(robot), world_(world) {}
 
-MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world,
-                             std::uint64_t seed)
-    : MujocoBackend(Empty{}, robot, world, seed) {
+MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world)
+    : MujocoBackend(Empty{}, robot, world) {
   model_ = model::compile_mjcf(scene_xml(robot, world), robot.model_path);
   data_ = mj_makeData(model_);
   mj_forward(model_, data_);
@@ -82,10 +80,15 @@ MujocoBackend::~MujocoBackend() {
   mj_deleteModel(model_);
 }
 
-// Sets the nominal posture: upright, at rest, the lowest foot point touching the ground.
+// Sets the nominal posture, beside it what was drawn: upright, the lowest foot point touching the
+// ground.
 void MujocoBackend::place_at_posture() {
   mj_resetData(model_, data_);
-  for (std::size_t j = 0; j < qpos_.size(); ++j) data_->qpos[qpos_[j]] = robot_.joints[j].posture;
+  const StartOffsets& start = world_.start;
+  for (std::size_t j = 0; j < qpos_.size(); ++j) {
+    data_->qpos[qpos_[j]] =
+        robot_.joints[j].posture + (j < start.joints.size() ? start.joints[j] : 0.0);
+  }
   mj_kinematics(model_, data_);
   double lowest = 1e9;
   for (const model::ContactDescription& c : robot_.contacts) {
@@ -93,10 +96,8 @@ void MujocoBackend::place_at_posture() {
     lowest = std::min(lowest, data_->site_xpos[3 * site + 2] - c.radius);
   }
   if (!robot_.contacts.empty()) data_->qpos[2] -= lowest;
-  // No robot is released perfectly at rest: draw a small initial velocity.
-  std::mt19937_64 random(seed_);
-  std::normal_distribution<double> velocity(0.0, 1.0);
-  for (int k = 0; k < 2; ++k) data_->qvel[k] = world_.start_velocity * velocity(random);
+  for (std::size_t k = 0; k < 2; ++k) data_->qvel[k] = start.velocity[k];
+  for (std::size_t k = 0; k < 3; ++k) data_->qvel[3 + k] = start.rates[k];
   mj_forward(model_, data_);
 }
 

@@ -50,8 +50,7 @@ struct PhysicsFacts {
 class MujocoBackend final : public hal::Hardware {
  public:
   // Throws std::runtime_error (MuJoCo's own text) if the scene does not compile.
-  MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world,
-                std::uint64_t seed);
+  MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world);
   ~MujocoBackend() override;
   MujocoBackend(const MujocoBackend&) = delete;
   MujocoBackend& operator=(const MujocoBackend&) = delete;
@@ -77,8 +76,7 @@ class MujocoBackend final : public hal::Hardware {
   // Target of the public constructor's delegation: once it has run, the destructor frees compiled
   // objects even if the public constructor throws.
   struct Empty {};
-  MujocoBackend(Empty, const model::RobotDescription& robot, const WorldDescription& world,
-                std::uint64_t seed);
+  MujocoBackend(Empty, const model::RobotDescription& robot, const WorldDescription& world);
   void apply_forces() noexcept;
   void apply_hold(const HeldBody& held) noexcept;
   void sense_contacts(hal::Sensors& sensors) noexcept;
@@ -87,7 +85,6 @@ class MujocoBackend final : public hal::Hardware {
 
   const model::RobotDescription& robot_;
   WorldDescription world_;
-  std::uint64_t seed_;
   mjModel_* model_ = nullptr;
   mjData_* data_ = nullptr;
   std::vector<int> qpos_, dof_, actuator_;  // by joint of the robot file

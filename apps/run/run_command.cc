@@ -145,24 +145,28 @@ int run_behavior(RunOptions options) {
         "--film: error: a film is made from the log with the report: leave out --no-log and "
         "--no-report");
   }
-  const sim::WorldDescription world = load_world(options.world);
-  const behaviors::PhysicsWorld physics = physics_world(world);
+  const sim::WorldDescription declared = load_world(options.world);
+  const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
   if (!behavior->has_robot) {
     throw InputError(behavior->path +
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
+  model::Draw drawn;
+  const sim::WorldDescription world = draw_world(options, *behavior, declared, drawn);
   Backend backend = make_backend(options, *behavior, world);
   engine::ControlLoop loop(*behavior, *backend.hardware, loop_settings(options, world));
 
   lab::RunSpec spec = make_spec(options, core::stop_on_signals());
   schedule_pushes(options, backend, spec);
+  schedule_push(drawn, backend, *behavior, spec);
   set_goal(options, *behavior, spec);
   lab::RunIdentity id = {behavior->name,  behavior->robot.name,
                          world.name,      backend.hardware->name(),
                          options.seed,    "",
-                         backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware)};
+                         backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware),
+                         drawn.values};
   const auto link = attach_link(options, loop, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);

@@ -45,6 +45,8 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_option("--seed", o.seed, "Seed of all random numbers")
       ->check(at_least(0, "a whole number from 0 on"))
       ->capture_default_str();
+  command.add_option("--variation", o.variation, "off: the seed draws nothing of the world")
+      ->check(CLI::IsMember({"off"}));
   command.add_option("--set", o.set,
                      "NAME=VALUE: a parameter, gain or planner value, e.g. lift_time=160ms");
   command.add_option(

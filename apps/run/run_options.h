@@ -24,6 +24,7 @@ struct RunOptions {
   std::uint64_t seed = 1;
   std::vector<std::string> set;
   std::vector<std::string> pushes;
+  std::string variation;  // `off`: the seed draws nothing of the world; empty: as the world says
   std::string goal, goal_velocity;
   std::string log;  // output folder; empty: a new one in out/run
   bool no_log = false;

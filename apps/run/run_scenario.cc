@@ -46,6 +46,10 @@ CheckedScenario load_checked(const RunOptions& options) {
   }
   sim::WorldDescription world =
       load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
+  if (scenario.variation) {
+    core::Diagnostics ignored;  // the loader has told
+    world.variation = model::read_variation(*scenario.variation, world.variation, ignored);
+  }
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics, physics_world(world));
@@ -95,10 +99,11 @@ int run_scenario_file(RunOptions options) {
   refuse_options(options);
   const CheckedScenario checked = load_checked(options);
   const lab::ScenarioDescription& scenario = checked.scenario;
-  const sim::WorldDescription& world = checked.world;
   const bool seed_given = std::ranges::find(options.given, "--seed") != options.given.end();
   if (!seed_given) options.seed = scenario.seeds.front();
   const behaviors::Behavior& behavior = *scenario.behavior;
+  model::Draw drawn;
+  const sim::WorldDescription world = draw_world(options, behavior, checked.world, drawn);
   Backend backend = make_backend(options, behavior, world);
   hal::SensorFaults sensors(*backend.hardware);
   const lab::ScenarioHooks hooks = make_hooks(backend, sensors);
@@ -107,10 +112,12 @@ int run_scenario_file(RunOptions options) {
   engine::ControlLoop loop(behavior, sensors, loop_settings(options, world));
 
   lab::RunSpec spec = make_spec(options, core::stop_on_signals());
+  schedule_push(drawn, backend, behavior, spec);
   lab::RunIdentity id = {behavior.name,   behavior.robot.name,
                          world.name,      sensors.name(),
                          options.seed,    "",
-                         backend.physics, lab::unused_torque_loops(behavior, sensors)};
+                         backend.physics, lab::unused_torque_loops(behavior, sensors),
+                         drawn.values};
   const auto link = attach_link(options, loop, spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);

@@ -5,16 +5,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apps/shared/commands.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/realtime/allocation_count.h"
+#include "core/text/json_text.h"
 #include "core/text/printable.h"
 #include "core/text/search_folders.h"
 #include "hal/backends/stub.h"
 #include "lab/run/run_log.h"
+#include "model/mjcf.h"
 
 namespace footfall::apps {
 
@@ -48,6 +52,32 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
   return world;
 }
 
+sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
+                                 const sim::WorldDescription& world, model::Draw& drawn) {
+  if (options.variation == "off" || options.backend != "mujoco") return world;
+  const std::vector<std::string> links = world.variation.mass.kind == model::Spread::Kind::none
+                                             ? std::vector<std::string>()
+                                             : model::body_names(behavior.robot.model_path);
+  drawn = model::draw(world.variation, behavior.robot.joint_count(), links, options.seed);
+  return sim::with_draw(world, drawn);
+}
+
+void schedule_push(const model::Draw& drawn, const Backend& backend,
+                   const behaviors::Behavior& behavior, lab::RunSpec& spec) {
+  if (!drawn.push || backend.mujoco == nullptr) return;
+  const model::DrawnPush push = *drawn.push;
+  const int body = backend.mujoco->find_body(behavior.robot.floating_base);
+  lab::ScheduledEvent event;
+  event.at_time = push.time;
+  event.optional = true;
+  event.label = fmt::format("drawn: {:g} N, {:g} s, {:.0f} deg", push.force, push.duration,
+                            push.direction * 180.0 / M_PI);
+  event.fire = [mujoco = backend.mujoco, body, push] {
+    mujoco->push(body, push.force, push.direction, push.duration);
+  };
+  spec.events.push_back(std::move(event));
+}
+
 Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
                      const sim::WorldDescription& world) {
   Backend backend;
@@ -61,7 +91,7 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
     backend.hardware = std::make_unique<hal::StubBackend>(settings);
     return backend;
   }
-  auto mujoco = std::make_unique<sim::MujocoBackend>(behavior.robot, world, options.seed);
+  auto mujoco = std::make_unique<sim::MujocoBackend>(behavior.robot, world);
   const sim::PhysicsFacts f = mujoco->facts();
   backend.physics = fmt::format(
       "step 1/{:.0f} s, friction {:g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature {:g}, "
@@ -75,7 +105,7 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
 
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world) {
   engine::LoopSettings settings;
-  settings.deviation = {world.control_model.mass_scale, world.control_model.com_shift};
+  settings.deviation = world.control_model;
   settings.planner_latency = world.planner_latency;
   settings.surface = world.surface;
   settings.lockstep = !options.realtime;
@@ -189,8 +219,9 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
                                             lab::RunIdentity& id) {
   if (options.no_log) return nullptr;
   id.log = options.log + "/log.mcap";
-  return std::make_unique<engine::LogWriter>(
-      id.log, behavior.signals, lab::make_log_header(behavior, log_source(options, world)));
+  engine::LogHeader header = lab::make_log_header(behavior, log_source(options, world));
+  header.run.emplace_back("variation", core::json_text(lab::variation_json(id)));
+  return std::make_unique<engine::LogWriter>(id.log, behavior.signals, header);
 }
 
 }  // namespace footfall::apps

@@ -31,6 +31,12 @@ struct Backend {
 // position of the reference, for messages. Prints problems and throws InputError.
 sim::WorldDescription load_world(const std::string& name, const std::string& beside = {},
                                  const std::string& place = {});
+// The world as this run's seed draws it, and the push that it draws into `spec`, which the backend
+// must then bring. The stub has nothing to draw.
+sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
+                                 const sim::WorldDescription& world, model::Draw& drawn);
+void schedule_push(const model::Draw& drawn, const Backend& backend,
+                   const behaviors::Behavior& behavior, lab::RunSpec& spec);
 Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
                      const sim::WorldDescription& world);
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world);

@@ -69,7 +69,6 @@ ScenarioRun run_scenario(const ScenarioDescription& scenario, std::uint64_t seed
   Stage stage(scenario, loop, hooks, seed);
   spec.max_time = scenario.duration;
   spec.max_steps = 0;
-  spec.events.clear();
   spec.observer = &stage;
   ScenarioRun out;
   out.run = run(loop, spec);

@@ -128,6 +128,7 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   json["lockstep"] = s.lockstep;
   json["planner_latency"] = s.planner_latency;
   json["mass_scale"] = s.deviation.mass_scale;
+  json["mass_scales"] = s.deviation.mass_scales;
   json["com_shift"] = s.deviation.com_shift;
   json["surface"] = nlohmann::json::array();
   for (const model::SurfaceRamp& ramp : s.surface.ramps) {
@@ -157,6 +158,7 @@ RunSetup read_setup(const std::string& text) {
     json.at("lockstep").get_to(s.lockstep);
     json.at("planner_latency").get_to(s.planner_latency);
     json.at("mass_scale").get_to(s.deviation.mass_scale);
+    json.at("mass_scales").get_to(s.deviation.mass_scales);
     json.at("com_shift").get_to(s.deviation.com_shift);
     for (const auto& ramp : json.at("surface")) {
       s.surface.ramps.push_back({ramp.at(0), ramp.at(1), ramp.at(2)});

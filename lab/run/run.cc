@@ -234,7 +234,7 @@ RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
   result.reloads = executive.exchanges();
   if (spec.log != nullptr) result.log_lost = spec.log->lost();
   for (const ScheduledEvent& event : spec.events) {
-    if (event.fire) result.missed.push_back(event.label);
+    if (event.fire && !event.optional) result.missed.push_back(event.label);
   }
   recorder.log().event("end", run_end_name(result.end), result.cause ? result.cause->text : "");
   return result;

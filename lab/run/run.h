@@ -27,6 +27,7 @@ struct ScheduledEvent {
   double phase = 0.0;             // ... plus this part of the last step's duration
   std::string label;              // for the log
   std::function<void()> fire;
+  bool optional = false;  // the run may end before it
 };
 
 struct RunStatus {

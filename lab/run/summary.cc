@@ -2,7 +2,9 @@
 #include "lab/run/summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -141,6 +143,27 @@ Json torque_loops_json(const RunIdentity& id) {
   return out;
 }
 
+// Lists of more than this many values are told by their largest.
+constexpr std::size_t kMostListed = 3;
+
+std::string variation_text(const RunIdentity& id) {
+  std::string text;
+  for (const auto& [name, values] : id.variation) {
+    text += text.empty() ? "" : ", ";
+    if (values.size() <= kMostListed) {
+      text += fmt::format("{} {:.3g}", name, fmt::join(values, " "));
+    } else {
+      double least = values.front(), most = values.front();
+      for (const double value : values) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+      text += fmt::format("{} {:.3g} to {:.3g}", name, least, most);
+    }
+  }
+  return fmt::format("  drawn        {}\n", text);
+}
+
 Json tick_json(const core::TimingHistogram& h) {
   return {{"p50", h.percentile(0.5) * 1e-3},
           {"p99", h.percentile(0.99) * 1e-3},
@@ -148,6 +171,14 @@ Json tick_json(const core::TimingHistogram& h) {
 }
 
 }  // namespace
+
+Json variation_json(const RunIdentity& id) {
+  Json out = Json::object();
+  for (const auto& [name, values] : id.variation) {
+    out[name] = values.size() == 1 ? Json(values.front()) : Json(values);
+  }
+  return out;
+}
 
 std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& behavior,
                                                   const hal::Hardware& hardware) {
@@ -205,6 +236,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["unused_torque_loops"] = torque_loops_json(id);
   out["max_distance_m"] = f.max_distance;
   out["missed"] = result.missed;
+  out["variation"] = variation_json(id);
   out["log_lost_ticks"] = result.log_lost;
   out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
   out["clearance_min_m"] = f.steps > 0 ? Json(f.worst_clearance) : Json();
@@ -275,6 +307,7 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
                       result.tick_time.percentile(0.5) * 1e-3,
                       result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);
   if (!id.unused_torque_loops.empty()) text += torque_loops_text(id);
+  if (!id.variation.empty()) text += variation_text(id);
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
   return text;
 }

@@ -29,7 +29,11 @@ struct RunIdentity {
   std::string log;      // path, empty: none
   std::string physics;  // one line: what is behind the figures
   std::vector<UnusedTorqueLoop> unused_torque_loops{};
+  // What the seed drew, by name with its unit.
+  std::vector<std::pair<std::string, std::vector<double>>> variation{};
 };
+// {NAME: number or list}
+nlohmann::ordered_json variation_json(const RunIdentity& id);
 
 // `physics_only` leaves out what a wall clock measured (tick_us, real_time_factor).
 nlohmann::ordered_json summary_json(const RunIdentity& id, const RunResult& result,

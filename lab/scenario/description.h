@@ -13,6 +13,7 @@
 #include "behaviors/expression/statistics.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/signal_table.h"
+#include "core/yaml/yaml.h"
 
 namespace footfall::lab {
 
@@ -99,6 +100,8 @@ struct ScenarioDescription {
   std::string robot;           // name or path as written; empty: the behavior's robot
   std::string world = "flat";  // name or path as written
   core::Mark world_mark;       // line 0 if not written
+  // `variation:`, over the world's (model::read_variation); it was read once without problems.
+  std::optional<core::YamlNode> variation;
   std::vector<std::uint64_t> seeds{1};
   double duration = 0.0;  // s
   std::vector<ScriptEntry> script;

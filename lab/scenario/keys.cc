@@ -1,6 +1,8 @@
 // Keys and words of a scenario file; see keys.h.
 #include "lab/scenario/keys.h"
 
+#include "model/variation/variation.h"
+
 namespace footfall::lab {
 namespace {
 
@@ -20,6 +22,8 @@ constexpr KeySpec kScenarioRows[] = {
         .required(),
     key("robot", text_of("a name or path"), "the robot").otherwise("the behavior's"),
     key("world", text_of("a name or path"), "the world").otherwise("flat"),
+    key("variation", map_of(model::kVariationKeys),
+        "what a seed draws, over what the world says; off: nothing"),
     key("seeds", list(integer(0, 1'000'000'000)),
         text_of("a number, or a range such as `100..119`"), "one run each")
         .otherwise("1"),

@@ -18,6 +18,7 @@
 #include "lab/scenario/keys.h"
 #include "model/mjcf.h"
 #include "model/robot/description.h"
+#include "model/variation/variation.h"
 
 namespace footfall::lab {
 namespace {
@@ -279,6 +280,10 @@ ScenarioDescription load_tree(const YamlNode& root, const std::string& path,
   read_head(context, root);
   load_named_behavior(context, root, options);
   load_bodies(context);
+  if (const YamlNode* variation = root.find("variation")) {
+    model::read_variation(*variation, {}, diagnostics);
+    scenario.variation = *variation;
+  }
   if (const YamlNode* scripts = root.find("scripts")) load_functions(context, *scripts);
   if (const YamlNode* script = root.find("script")) load_script(context, *script);
   if (const YamlNode* expect = root.find("expect")) load_expectations(context, *expect);

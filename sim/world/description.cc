@@ -53,7 +53,9 @@ class WorldLoader {
     if (const YamlNode* node = root.find("doc")) {
       world_.doc = core::read_text(*node, diagnostics_).value_or("");
     }
-    if (const YamlNode* node = root.find("start")) read_start(*node);
+    if (const YamlNode* node = root.find("variation")) {
+      world_.variation = model::read_variation(*node, {}, diagnostics_);
+    }
     read_bounded(root, "planner_latency", core::kTime, 0.0, kInfinity, world_.planner_latency);
   }
 
@@ -126,12 +128,6 @@ class WorldLoader {
       }
       world_.surface.ramps.push_back(ramp);
     }
-  }
-
-  void read_start(const YamlNode& node) {
-    if (!core::expect_map(node, "a map", diagnostics_)) return;
-    core::check_keys(node, kStartKeys, diagnostics_);
-    read_bounded(node, "velocity", core::kVelocity, 0.0, 10.0, world_.start_velocity);
   }
 
   void read_actuators(const YamlNode& node) {
@@ -318,6 +314,19 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
   for (const ConstraintName& constraint : world.constraints) {
     refuse(constraint.mark, fmt::format("the external aid '{}'", constraint.name));
   }
+}
+
+WorldDescription with_draw(WorldDescription world, const model::Draw& drawn) {
+  world.start = {drawn.joints, drawn.velocity, drawn.rates};
+  world.friction = drawn.friction.value_or(world.friction);
+  world.control_model.mass_scales = drawn.masses;
+  for (const auto& [link, shift] : drawn.com) {
+    for (std::size_t k = 0; k < shift.size(); ++k) {
+      world.control_model.com_shift[link][k] += shift[k];
+    }
+  }
+  world.actuators.command_delay += drawn.command_delay.value_or(0.0);
+  return world;
 }
 
 std::string find_world_file(const std::string& name, const std::vector<std::string>& search) {

@@ -10,6 +10,7 @@
 #include "core/diagnostics/diagnostics.h"
 #include "model/control_model.h"
 #include "model/height_surface.h"
+#include "model/variation/variation.h"
 
 namespace footfall::sim {
 
@@ -73,6 +74,13 @@ struct ConstraintName {
   core::Mark mark;
 };
 
+// How a run begins beside the nominal posture at rest.
+struct StartOffsets {
+  std::vector<double> joints;        // rad, by joint of the robot file; empty: 0
+  std::array<double, 2> velocity{};  // m/s, of the base, x and y
+  std::array<double, 3> rates{};     // rad/s, of the base, about its axes
+};
+
 // The default values describe the default world: flat ground, friction 0.9, ideal actuators and
 // sensors, planner latency 2 ms.
 struct WorldDescription {
@@ -87,12 +95,16 @@ struct WorldDescription {
   model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
   std::vector<ConstraintName> constraints;
   double planner_latency = 2e-3;  // s, between planner request and plan, in lock-step
-  double start_velocity = 0.0;  // m/s, standard deviation of the base's initial horizontal velocity
+  model::Variation variation;     // what a seed draws
+  StartOffsets start;             // what was drawn
   PhysicsSettings physics;
 };
 
 // Loads a world file. Problems are added to diagnostics; the result is valid only without errors.
 WorldDescription load_world(const std::string& path, core::Diagnostics& diagnostics);
+
+// The world of one run: friction, start, control model and delay as drawn.
+WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);
 
 // Reports everything that a world asks for and this simulator does not support (id "unsupported"),
 // so that nothing in a file is ignored silently.

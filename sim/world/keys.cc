@@ -1,6 +1,8 @@
 // Keys and words of a world file; see keys.h.
 #include "sim/world/keys.h"
 
+#include "model/variation/variation.h"
+
 namespace footfall::sim {
 namespace {
 
@@ -24,7 +26,7 @@ constexpr KeySpec kWorldRows[] = {
         "e.g. a boom or a planarizer; none by default"),
     key("planner_latency", quantity(kTime), "time from a planner request to its answer")
         .otherwise("2 ms"),
-    key("start", map_of(kStartKeys), "initial condition of a run"),
+    key("variation", map_of(model::kVariationKeys), "what a seed draws"),
     key("physics", map_of(kPhysicsKeys), "MuJoCo's settings"),
 };
 
@@ -50,12 +52,6 @@ constexpr KeySpec kRampRows[] = {
     key("from", quantity(kLength), "x in the world where it begins").required(),
     key("to", quantity(kLength), "x in the world where it ends").required(),
     key("rise", quantity(kLength), "rise; negative: fall").required(),
-};
-
-constexpr KeySpec kStartRows[] = {
-    key("velocity", quantity(kVelocity),
-        "standard deviation of the base's random initial horizontal velocity")
-        .otherwise("0 m/s"),
 };
 
 constexpr WordSpec kActuatorModelRows[] = {
@@ -153,8 +149,6 @@ constinit const core::KeyTable kSurfaceKeys = {
     .id = "surface", .doc = "The ground height that the CoM follows.", .keys = kSurfaceRows};
 constinit const core::KeyTable kRampKeys = {
     .id = "ramp", .doc = "A range of x in which the surface rises.", .keys = kRampRows};
-constinit const core::KeyTable kStartKeys = {
-    .id = "start", .doc = "Initial condition of a run.", .keys = kStartRows};
 constinit const core::KeyTable kActuatorsKeys = {
     .id = "actuators", .doc = "Dynamics between command and joint torque.", .keys = kActuatorsRows};
 constinit const core::KeyTable kWorldSensorsKeys = {

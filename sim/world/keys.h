@@ -12,7 +12,6 @@ extern const core::KeyTable kTerrainKeys;
 extern const core::KeyTable kBoxKeys;
 extern const core::KeyTable kSurfaceKeys;
 extern const core::KeyTable kRampKeys;
-extern const core::KeyTable kStartKeys;
 extern const core::KeyTable kActuatorsKeys;
 extern const core::KeyTable kWorldSensorsKeys;
 extern const core::KeyTable kJointSensorKeys;

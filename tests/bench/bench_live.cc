@@ -90,7 +90,7 @@ footfall_lcm::request_t random_edit(const footfall_lcm::catalogue_t& catalogue,
 }
 
 Round play(bool tuned, double telemetry) {
-  Rig rig("balance_best", 1);
+  Rig rig("balance_best");
   engine::LiveServer server(*rig.behavior, rig.loop->edits().entrance(1), {1, false});
   engine::LiveFeed feed(*rig.loop, telemetry);
   footfall_lcm::catalogue_t catalogue{};

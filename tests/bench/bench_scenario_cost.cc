@@ -34,7 +34,7 @@ lab::ScenarioDescription load(const std::string& path) {
 double timed(const lab::ScenarioDescription& scenario, const std::string& log_path, bool watched) {
   const sim::WorldDescription world;
   const behaviors::Behavior& behavior = *scenario.behavior;
-  sim::MujocoBackend backend(behavior.robot, world, scenario.seeds.front());
+  sim::MujocoBackend backend(behavior.robot, world);
   hal::SensorFaults sensors(backend);
   hal::Hardware& plain = backend;
   engine::LoopSettings settings;

@@ -22,8 +22,7 @@ struct Rig {
   std::unique_ptr<engine::ControlLoop> loop;
 
   // behavior: a name in behaviors/library or a path. Throws std::runtime_error with all messages.
-  explicit Rig(const std::string& name, std::uint64_t seed = 1,
-               const sim::WorldDescription& in = sim::WorldDescription())
+  explicit Rig(const std::string& name, const sim::WorldDescription& in = sim::WorldDescription())
       : world(in) {
     core::Diagnostics diagnostics;
     behaviors::LoadOptions options;
@@ -34,9 +33,9 @@ struct Rig {
             : name;
     behavior = behaviors::load_behavior(path, options, diagnostics);
     if (!behavior) throw std::runtime_error(diagnostics.to_string());
-    backend = std::make_unique<sim::MujocoBackend>(behavior->robot, world, seed);
+    backend = std::make_unique<sim::MujocoBackend>(behavior->robot, world);
     engine::LoopSettings settings;
-    settings.deviation = {world.control_model.mass_scale, world.control_model.com_shift};
+    settings.deviation = world.control_model;
     settings.planner_latency = world.planner_latency;
     loop = std::make_unique<engine::ControlLoop>(*behavior, *backend, settings);
   }

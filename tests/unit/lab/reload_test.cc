@@ -117,7 +117,7 @@ class Reload : public testing::Test {
 
   // Runs first.yaml and loads the files at their times.
   lab::RunResult run(const std::vector<Request>& files, double end = kEnd) {
-    Rig rig(path("first.yaml"), 1);
+    Rig rig(path("first.yaml"));
     const lab::ReloadSetup how = setup(rig);
     engine::LogWriter log(path("log.mcap"), rig.behavior->signals,
                           lab::make_log_header(*rig.behavior, how.source));
@@ -254,7 +254,7 @@ templates:
     states:
       lift: {on_entry: [{log: "{sqrt(0 - com.pos.z/1 m)}"}]}
 )");
-  Rig rig(path("first.yaml"), 1);
+  Rig rig(path("first.yaml"));
   const lab::ReloadSetup how = setup(rig);
   lab::Reloads reloads(*rig.loop, how);
   Counted counted(reloads);

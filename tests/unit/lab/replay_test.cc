@@ -43,7 +43,7 @@ class Workshop : public testing::Test {
 
   // Runs 1.5 s with a push and a moving goal; returns the whole log.
   lab::Log run(const std::string& name, double push = 30.0) {
-    Rig rig(path("balance.yaml"), 3);
+    Rig rig(path("balance.yaml"));
     lab::RunSpec spec;
     spec.max_time = 1.5;
     spec.goal = {{0.02, 0.0}};
@@ -113,7 +113,7 @@ TEST_F(Workshop, ABaseThatWasFoundByItsNameIsInTheLog) {
 }
 
 TEST_F(Workshop, AHardEditReplaysWithTheLimitsThatItHad) {
-  Rig rig(path("balance.yaml"), 3);
+  Rig rig(path("balance.yaml"));
   lab::RunSpec spec;
   spec.max_time = 1.0;
   lab::ScheduledEvent event;

@@ -22,8 +22,8 @@ class Mujoco : public testing::Test {
  protected:
   model::RobotDescription robot = load_hume();
 
-  sim::MujocoBackend started(const sim::WorldDescription& world = {}, std::uint64_t seed = 1) {
-    return sim::MujocoBackend(robot, world, seed);
+  sim::MujocoBackend started(const sim::WorldDescription& world = {}) {
+    return sim::MujocoBackend(robot, world);
   }
   // High above the ground, so that nothing touches for a second.
   static void lift(sim::MujocoBackend& backend) {
@@ -250,7 +250,7 @@ TEST_F(Mujoco, PushesThatOverlapOnABodyAddUp) {
 TEST_F(Mujoco, ContactForcesCarryTheWeightUpwards) {
   sim::WorldDescription world;
   world.physics.steps_per_tick = 1;  // a reading for each physics step
-  Rig rig("balance", 1, world);
+  Rig rig("balance", world);
   rig.loop->start();
   const Vector3 before = momentum(*rig.backend);
   const double step = rig.loop->period();
@@ -303,28 +303,22 @@ TEST_F(Mujoco, AnExplosionEndsTheLoopAsAFall) {
   EXPECT_EQ(rig.loop->faults().of(core::Fault::simulator_warning), 1);
 }
 
-TEST_F(Mujoco, ASeedDecidesHowARunBegins) {
-  sim::WorldDescription world;
-  world.start_velocity = 0.01;
-  const auto speed = [&](std::uint64_t seed) {
-    auto backend = started(world, seed);
-    backend.start();
-    hal::Sensors sensors;
-    backend.read(sensors);
-    return sensors.v_WB;
-  };
-  EXPECT_EQ(speed(1), speed(1));
-  EXPECT_NE(speed(1), speed(2));
-  EXPECT_EQ(speed(1)[2], 0.0);
-  // The standard deviation of 200 seeds, two axes: 5 % is its own standard error.
-  double sum = 0.0;
-  auto backend = started(world, 1);
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const Vector3 v = speed(seed);
-    sum += v[0] * v[0] + v[1] * v[1];
+TEST_F(Mujoco, ARunBeginsAsItWasDrawn) {
+  model::Draw drawn;
+  drawn.joints = {0.01, -0.02, 0.03, 0.0, 0.005, -0.006};
+  drawn.velocity = {0.02, -0.03};
+  drawn.rates = {0.1, -0.2, 0.3};
+  drawn.friction = 0.65;
+  auto backend = started(sim::with_draw({}, drawn));
+  backend.start();
+  hal::Sensors sensors;
+  backend.read(sensors);
+  for (std::size_t j = 0; j < 6; ++j) {
+    EXPECT_DOUBLE_EQ(sensors.q[j], robot.joints[j].posture + drawn.joints[j]);
   }
-  EXPECT_NEAR(std::sqrt(sum / 400.0), 0.01, 4 * 0.05 * 0.01);
-  EXPECT_EQ(started().facts().mass, backend.facts().mass);
+  EXPECT_EQ(sensors.v_WB, (Vector3{0.02, -0.03, 0.0}));
+  EXPECT_EQ(sensors.w_WB_B, drawn.rates);
+  EXPECT_EQ(backend.facts().friction, 0.65);
 }
 
 TEST_F(Mujoco, StartsUprightAtRestWithItsFeetOnTheGround) {

@@ -15,7 +15,7 @@ namespace {
 // and again.
 TEST(MujocoForces, AHeldBodyStaysWhereItIsUntilItIsLetGo) {
   const model::RobotDescription robot = load_hume();
-  sim::MujocoBackend backend(robot, sim::WorldDescription(), 1);
+  sim::MujocoBackend backend(robot, sim::WorldDescription());
   backend.start();
   const int torso = backend.find_body(robot.floating_base);
   const double* p = backend.data()->qpos;

@@ -10,7 +10,7 @@ import time
 from command import BINARY, CHART, SOURCE, STAND, Case, main
 
 KEYS = """behavior robot world backend seed end steps time_s fell error foot_placement_m
-max_torque_step_Nm peak_torque_Nm goal_error_m path_length_m internal_force faults tick_us
+max_torque_step_Nm peak_torque_Nm goal_error_m path_length_m internal_force faults fault_ticks variation format tick_us
 allocations real_time_factor log""".split()
 
 
@@ -143,14 +143,14 @@ class NoRights(Case):
 
 class Run(Case):
     def test_json_is_the_last_line_and_has_every_key(self):
-        result = self.run_it("balance", "--for", "3s", "--seed", "5", "--json")
+        result = self.run_it("balance", "--for", "3s", "--seed", "6", "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
         summary = json.loads(result.stdout.splitlines()[-1])
         for key in KEYS:
             self.assertIn(key, summary)
         self.assertEqual((summary["behavior"], summary["robot"], summary["world"]),
                          ("balance", "hume", "flat"))
-        self.assertEqual((summary["backend"], summary["seed"], summary["end"]), ("mujoco", 5, "time"))
+        self.assertEqual((summary["backend"], summary["seed"], summary["end"]), ("mujoco", 6, "time"))
         self.assertAlmostEqual(summary["time_s"], 3.0, delta=1e-3)
         self.assertFalse(summary["fell"])
         self.assertTrue(os.path.isfile(self.folder / summary["log"]))

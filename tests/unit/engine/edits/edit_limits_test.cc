@@ -135,7 +135,7 @@ TEST(EditLimits, NoHardEditOfABalancingRobotStepsTheTorqueBeyondTheBound) {
   std::mt19937_64 random(7);
   int edits = 0, held_back = 0;
   for (int run = 0; run < 6; ++run) {
-    Rig rig("balance_best", static_cast<std::uint64_t>(run) + 1);
+    Rig rig("balance_best");
     const behaviors::Behavior& behavior = *rig.behavior;
     const double bound = behavior.robot.torque_step_limit;
     engine::InputTrace trace;

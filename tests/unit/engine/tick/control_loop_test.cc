@@ -181,7 +181,7 @@ TEST(ControlLoop, TwoRunsAreEqualBitForBitAndSoAreTheirLogs) {
   std::vector<double> first;
   std::vector<std::string> logs;
   for (const char* name : {"a", "b"}) {
-    Rig rig("balance", 3);
+    Rig rig("balance");
     const std::string path = testing::TempDir() + "footfall_" + std::to_string(getpid()) + name;
     engine::LogHeader header;
     header.rate_mhz = 1'500'000;

@@ -225,7 +225,7 @@ class FaultReaction : public testing::TestWithParam<Case> {
   std::unique_ptr<hal::Hardware> backend() const {
     const model::RobotDescription& robot = behavior_->robot;
     if (GetParam().mujoco) {
-      return std::make_unique<sim::MujocoBackend>(robot, sim::WorldDescription(), 1);
+      return std::make_unique<sim::MujocoBackend>(robot, sim::WorldDescription());
     }
     hal::StubSettings settings;
     settings.joints = robot.joint_count();

@@ -89,8 +89,8 @@ void edit(ControlLoop& loop, const char* name, double value) {
 
 // The library's stepping on MuJoCo, with and without a reload of its own file on the way.
 std::vector<double> torques_of_steps(bool reload) {
-  Rig rig("balance_best", 1);
-  Rig same("balance_best", 1);  // only its behavior is used
+  Rig rig("balance_best");
+  Rig same("balance_best");  // only its behavior is used
   Successor next(*rig.behavior, *rig.backend, std::move(same.behavior));
   EXPECT_TRUE(next.reasons(*rig.behavior).empty());
   rig.loop->start();

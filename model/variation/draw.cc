@@ -1,0 +1,130 @@
+// Random numbers of a seed; see variation.h.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "model/variation/variation.h"
+
+namespace footfall::model {
+namespace {
+
+constexpr double kCut = 3.0;  // standard deviations
+
+// The order is part of what a seed means: new quantities go to the end.
+enum class Stream : std::uint32_t {
+  velocity,
+  joints,
+  rates,
+  friction,
+  mass,
+  com,
+  command_delay,
+  push,
+};
+
+class Source {
+ public:
+  Source(std::uint64_t seed, Stream stream) {
+    std::seed_seq words{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U),
+                        static_cast<std::uint32_t>(stream)};
+    random_.seed(words);
+  }
+
+  double of(const Spread& spread) {
+    switch (spread.kind) {
+      case Spread::Kind::none:
+        return 0.0;
+      case Spread::Kind::fixed:
+        return spread.a;
+      case Spread::Kind::normal:
+        return spread.a * normal();
+      case Spread::Kind::uniform:
+        return spread.a + (spread.b - spread.a) * uniform();
+    }
+    return 0.0;
+  }
+  double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
+
+ private:
+  double normal() {
+    for (;;) {
+      const double z = normal_(random_);
+      if (std::abs(z) <= kCut) return z;
+    }
+  }
+
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+};
+
+bool is_drawn(const Spread& spread) { return spread.kind != Spread::Kind::none; }
+
+}  // namespace
+
+std::optional<double> Variation::least_friction() const {
+  if (!is_drawn(friction)) return std::nullopt;
+  return friction.a;  // fixed, or where the range begins
+}
+
+Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
+          std::uint64_t seed) {
+  Draw out;
+  const auto tell = [&out](const char* name, std::vector<double> values) {
+    out.values.emplace_back(name, std::move(values));
+  };
+  if (is_drawn(v.velocity)) {
+    Source source(seed, Stream::velocity);
+    for (double& x : out.velocity) x = source.of(v.velocity);
+    tell("start.velocity_mps", {out.velocity.begin(), out.velocity.end()});
+  }
+  if (is_drawn(v.joints)) {
+    Source source(seed, Stream::joints);
+    for (int j = 0; j < joints; ++j) out.joints.push_back(source.of(v.joints));
+    tell("start.joints_rad", out.joints);
+  }
+  if (is_drawn(v.rates)) {
+    Source source(seed, Stream::rates);
+    for (double& x : out.rates) x = source.of(v.rates);
+    tell("start.rates_radps", {out.rates.begin(), out.rates.end()});
+  }
+  if (is_drawn(v.friction)) {
+    out.friction = Source(seed, Stream::friction).of(v.friction);
+    tell("friction", {*out.friction});
+  }
+  if (is_drawn(v.mass)) {
+    Source source(seed, Stream::mass);
+    std::vector<double> factors;
+    for (const std::string& link : links) {
+      factors.push_back(1.0 + source.of(v.mass));
+      out.masses[link] = factors.back();
+    }
+    tell("control_model.mass", std::move(factors));
+  }
+  Source com(seed, Stream::com);
+  for (const auto& [link, spread] : v.com) {
+    if (!is_drawn(spread)) continue;
+    auto& shift = out.com[link];
+    for (double& x : shift) x = com.of(spread);
+    tell(("control_model.com." + link + "_m").c_str(), {shift.begin(), shift.end()});
+  }
+  if (is_drawn(v.command_delay)) {
+    out.command_delay = Source(seed, Stream::command_delay).of(v.command_delay);
+    tell("command_delay_s", {*out.command_delay});
+  }
+  if (v.push.impulse > 0.0) {
+    Source source(seed, Stream::push);
+    DrawnPush push;
+    const auto [from, to] = v.push.between;
+    push.time = from + (to - from) * source.uniform();
+    push.direction = 2.0 * std::numbers::pi * source.uniform();
+    push.duration = v.push.duration;
+    push.force = v.push.impulse / v.push.duration;
+    out.push = push;
+    tell("push.time_s", {push.time});
+    tell("push.direction_rad", {push.direction});
+  }
+  return out;
+}
+
+}  // namespace footfall::model

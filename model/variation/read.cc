@@ -1,0 +1,184 @@
+// `variation:` of a file: keys and reading; see variation.h.
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "core/yaml/value_reader.h"
+#include "model/variation/variation.h"
+
+namespace footfall::model {
+namespace {
+
+using namespace core;  // constructors of the tables
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr KeySpec kSpreadRows[] = {
+    key("sd", any_quantity(),
+        "standard deviation of a normal distribution around 0, cut at three of them"),
+    key("range", pair(any_quantity()), "ends of a uniform distribution"),
+};
+
+constexpr KeySpec kVariedStartRows[] = {
+    key("velocity", map_of(kSpreadKeys), any_quantity(), "of the base, x and y each"),
+    key("joints", map_of(kSpreadKeys), any_quantity(), "angle of each joint, from the posture"),
+    key("rates", map_of(kSpreadKeys), any_quantity(),
+        "angular velocity of the base, about each axis"),
+};
+
+constexpr KeySpec kVariedModelRows[] = {
+    key("mass", map_of(kSpreadKeys), any_quantity(), "relative change of each link's mass"),
+    key("com", by_name(map_of(kSpreadKeys)),
+        "shift of a link's centre of mass, x and y each, by link"),
+};
+
+constexpr KeySpec kVariedPushRows[] = {
+    key("impulse", quantity(kImpulse), "force times duration").required(),
+    key("between", pair(quantity(kTime)), "times between which it comes").required(),
+    key("for", quantity(kTime), "its duration").otherwise("100 ms"),
+};
+
+constexpr KeySpec kVariationRows[] = {
+    key("start", map_of(kVariedStartKeys), "how the robot stands when the run begins"),
+    key("friction", map_of(kSpreadKeys), any_quantity(),
+        "of the ground, in the place of `ground: {friction}`"),
+    key("control_model", map_of(kVariedModelKeys),
+        "what the controller believes, beside the truth"),
+    key("command_delay", map_of(kSpreadKeys), any_quantity(), "added to that of the actuators"),
+    key("push", map_of(kVariedPushKeys), "a push in any horizontal direction"),
+};
+
+// Reads distributions; what they are over is known here only.
+class Reader {
+ public:
+  explicit Reader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+
+  void spread(const YamlNode& map, const char* name, Dimension dimension, double least, double most,
+              Spread& out) {
+    if (const YamlNode* node = map.find(name)) out = read(*node, dimension, least, most);
+  }
+
+  Spread read(const YamlNode& node, Dimension dimension, double least, double most) {
+    Spread out;
+    if (is_off(node)) return out;
+    if (!node.is_map()) {
+      const auto fixed = read_bounded(node, dimension, least, most, diagnostics_);
+      if (fixed) out = {Spread::Kind::fixed, *fixed, *fixed};
+      return out;
+    }
+    check_keys(node, kSpreadKeys, diagnostics_);
+    const YamlNode* const sd = node.find("sd");
+    const YamlNode* const range = node.find("range");
+    if ((sd == nullptr) == (range == nullptr)) {
+      diagnostics_.error(node.mark, "missing-key", "expected 'sd' or 'range', one of them");
+    } else if (sd != nullptr) {
+      const auto value = read_bounded(*sd, dimension, 0.0, kInfinity, diagnostics_);
+      if (value) out = {Spread::Kind::normal, *value, 0.0};
+    } else if (const auto ends = read_range(*range, dimension, diagnostics_)) {
+      if ((*ends)[0] < least || (*ends)[1] > most) {
+        diagnostics_.error(range->mark, "out-of-range",
+                           fmt::format("expected a range within {:g} and {:g}", least, most));
+      }
+      out = {Spread::Kind::uniform, (*ends)[0], (*ends)[1]};
+    }
+    return out;
+  }
+
+  static bool is_off(const YamlNode& node) {
+    return node.is_scalar() && !node.quoted && node.scalar == "off";
+  }
+
+  void start(const YamlNode& node, Variation& out) {
+    if (is_off(node)) {
+      out.velocity = out.joints = out.rates = {};
+      return;
+    }
+    if (!expect_map(node, "{velocity: ..., joints: ..., rates: ...}", diagnostics_)) return;
+    check_keys(node, kVariedStartKeys, diagnostics_);
+    spread(node, "velocity", kVelocity, -10.0, 10.0, out.velocity);
+    spread(node, "joints", kNone, -1.0, 1.0, out.joints);
+    spread(node, "rates", kRate, -10.0, 10.0, out.rates);
+  }
+
+  void control_model(const YamlNode& node, Variation& out) {
+    if (is_off(node)) {
+      out.mass = {};
+      out.com.clear();
+      return;
+    }
+    if (!expect_map(node, "{mass: ..., com: {LINK: ...}}", diagnostics_)) return;
+    check_keys(node, kVariedModelKeys, diagnostics_);
+    spread(node, "mass", kNone, -0.9, 9.0, out.mass);
+    const YamlNode* const com = node.find("com");
+    if (com == nullptr) return;
+    if (is_off(*com)) {
+      out.com.clear();
+    } else if (expect_map(*com, "a map by link", diagnostics_)) {
+      for (const YamlEntry& entry : com->entries) {
+        out.com[entry.key] = read(entry.value, kLength, -1.0, 1.0);
+      }
+    }
+  }
+
+  void push(const YamlNode& node, Variation& out) {
+    out.push = {};
+    if (is_off(node)) return;
+    if (!expect_map(node, "{impulse: 1 N s, between: [3 s, 10 s]}", diagnostics_)) return;
+    check_keys(node, kVariedPushKeys, diagnostics_);
+    if (const YamlNode* impulse = require_key(node, "impulse", diagnostics_)) {
+      out.push.impulse = read_bounded(*impulse, kImpulse, 0.0, 1e3, diagnostics_).value_or(0.0);
+    }
+    if (const YamlNode* between = require_key(node, "between", diagnostics_)) {
+      out.push.between = read_range(*between, kTime, diagnostics_).value_or(out.push.between);
+    }
+    if (const YamlNode* time = node.find("for")) {
+      out.push.duration = read_bounded(*time, kTime, 1e-3, 10.0, diagnostics_).value_or(0.1);
+    }
+  }
+
+ private:
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+Variation read_variation(const YamlNode& node, const Variation& base, Diagnostics& diagnostics) {
+  if (Reader::is_off(node)) return {};
+  Variation out = base;
+  if (!expect_map(node, "a map of what a seed draws, or off", diagnostics)) return out;
+  check_keys(node, kVariationKeys, diagnostics);
+  Reader reader(diagnostics);
+  if (const YamlNode* start = node.find("start")) reader.start(*start, out);
+  reader.spread(node, "friction", kNone, 0.0, 10.0, out.friction);
+  if (out.friction.kind == Spread::Kind::normal) {
+    diagnostics.error(node.find("friction")->mark, "out-of-range",
+                      "a friction is no difference from 0: expected {range: [0.6, 1]}");
+    out.friction = {};
+  }
+  if (const YamlNode* model = node.find("control_model")) reader.control_model(*model, out);
+  reader.spread(node, "command_delay", kTime, 0.0, 1.0, out.command_delay);
+  if (out.command_delay.kind == Spread::Kind::normal) {
+    diagnostics.error(node.find("command_delay")->mark, "out-of-range",
+                      "a delay cannot be negative: expected {range: [0 s, 667 us]}");
+    out.command_delay = {};
+  }
+  if (const YamlNode* push = node.find("push")) reader.push(*push, out);
+  return out;
+}
+
+constinit const KeyTable kSpreadKeys = {
+    .id = "spread", .doc = "A distribution of one number.", .keys = kSpreadRows};
+constinit const KeyTable kVariedStartKeys = {
+    .id = "varied_start", .doc = "What a seed draws of the start.", .keys = kVariedStartRows};
+constinit const KeyTable kVariedModelKeys = {.id = "varied_model",
+                                             .doc = "What a seed draws of the control model.",
+                                             .keys = kVariedModelRows};
+constinit const KeyTable kVariedPushKeys = {
+    .id = "varied_push", .doc = "A push that a seed draws.", .keys = kVariedPushRows};
+constinit const KeyTable kVariationKeys = {.id = "variation",
+                                           .doc =
+                                               "What a seed draws. A plain value in the place of a "
+                                               "distribution pins it, `off` takes it away.",
+                                           .keys = kVariationRows};
+
+}  // namespace footfall::model

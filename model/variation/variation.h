@@ -1,0 +1,82 @@
+// What a seed draws: the differences between one day in the lab and the next. A world file declares
+// distributions (`variation:`), a scenario may pin or widen single ones; a run draws once, before
+// it begins, and says what it drew.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics/diagnostics.h"
+#include "core/yaml/key_table.h"
+#include "core/yaml/yaml.h"
+
+namespace footfall::model {
+
+// A distribution of one number, SI. A normal one is cut at three standard deviations.
+struct Spread {
+  enum class Kind : std::uint8_t { none, fixed, normal, uniform };
+  Kind kind = Kind::none;
+  double a = 0.0, b = 0.0;  // fixed: a; normal: mean 0, standard deviation a; uniform: from a to b
+};
+
+// A push of an impulse at a time between two, in any horizontal direction.
+struct PushSpread {
+  double impulse = 0.0;             // N s; 0: none
+  double duration = 0.1;            // s
+  std::array<double, 2> between{};  // s
+};
+
+struct Variation {
+  Spread velocity;                    // m/s, of the base at the start, x and y each
+  Spread joints;                      // rad, each joint's angle at the start, from its posture
+  Spread rates;                       // rad/s, of the base at the start, about each of its axes
+  Spread friction;                    // of the ground, in the place of the world's
+  Spread mass;                        // relative change of each link's mass in the control model
+  std::map<std::string, Spread> com;  // m, x and y of a link's CoM in the control model
+  Spread command_delay;               // s, added to the world's
+  PushSpread push;
+
+  // The least friction that can be drawn; nullopt: it is not drawn.
+  std::optional<double> least_friction() const;
+};
+
+// `variation:` of a world or a scenario.
+extern const core::KeyTable kVariationKeys;
+extern const core::KeyTable kSpreadKeys, kVariedStartKeys, kVariedModelKeys, kVariedPushKeys;
+
+// Reads the map over `base`: what it names is replaced, `off` takes a draw away; `off` as a whole
+// takes all away.
+Variation read_variation(const core::YamlNode& node, const Variation& base,
+                         core::Diagnostics& diagnostics);
+
+struct DrawnPush {
+  double time = 0.0;       // s
+  double force = 0.0;      // N
+  double direction = 0.0;  // rad, from the heading
+  double duration = 0.0;   // s
+};
+
+// What one seed drew. Empty or nullopt: not drawn.
+struct Draw {
+  std::vector<double> joints;        // rad, by joint of the robot file
+  std::array<double, 2> velocity{};  // m/s
+  std::array<double, 3> rates{};     // rad/s
+  std::optional<double> friction;
+  std::map<std::string, double> masses;              // factor, by link
+  std::map<std::string, std::array<double, 2>> com;  // m, by link
+  std::optional<double> command_delay;               // s, added
+  std::optional<DrawnPush> push;
+  // What was drawn, by name with its unit (`start.velocity_mps`), for summaries and logs.
+  std::vector<std::pair<std::string, std::vector<double>>> values;
+};
+
+// Each quantity has a stream of random numbers of its own: to pin one leaves the others as they
+// are. `links`: names of the robot's bodies.
+Draw draw(const Variation& variation, int joints, const std::vector<std::string>& links,
+          std::uint64_t seed);
+
+}  // namespace footfall::model

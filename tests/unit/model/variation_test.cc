@@ -1,0 +1,119 @@
+// What a seed draws: the same for the same seed, cut at three standard deviations, each quantity
+// for itself.
+#include "model/variation/variation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace footfall::tests {
+namespace {
+
+using model::draw;
+using model::Draw;
+using model::Spread;
+using model::Variation;
+
+Variation read(const std::string& text, const Variation& base = {}) {
+  core::Diagnostics diagnostics;
+  const Variation variation =
+      model::read_variation(core::load_yaml_text(text, "w.yaml", diagnostics), base, diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "");
+  return variation;
+}
+
+std::string problems(const std::string& text) {
+  core::Diagnostics diagnostics;
+  model::read_variation(core::load_yaml_text(text, "w.yaml", diagnostics), {}, diagnostics);
+  return diagnostics.to_string();
+}
+
+constexpr const char* kAll = R"(
+start: {joints: {sd: 0.5 deg}, velocity: {sd: 3 cm/s}, rates: {sd: 0.05 rad/s}}
+friction: {range: [0.6, 1]}
+control_model: {mass: {sd: 3 %}, com: {torso: {sd: 5 mm}}}
+command_delay: {range: [0 s, 667 us]}
+push: {impulse: 1 N s, between: [3 s, 10 s]}
+)";
+const std::vector<std::string> kLinks = {"torso", "thigh", "shank"};
+
+TEST(Variation, ASeedDrawsTheSameAgainAndAnotherSomethingElse) {
+  const Variation all = read(kAll);
+  const Draw one = draw(all, 6, kLinks, 7), again = draw(all, 6, kLinks, 7);
+  const Draw other = draw(all, 6, kLinks, 8);
+  EXPECT_EQ(one.values, again.values);
+  ASSERT_EQ(one.values.size(), other.values.size());
+  for (std::size_t k = 0; k < one.values.size(); ++k) EXPECT_NE(one.values[k], other.values[k]);
+}
+
+// Moments of 20 000 numbers: a standard error is 1/sqrt(20 000) of the deviation, 0.5 % of it for
+// the deviation itself; bounds of five of them. The cut takes 1.3 % off the deviation.
+TEST(Variation, ANormalDrawIsCutAtThreeDeviations) {
+  const Variation v = read("start: {velocity: {sd: 2 cm/s}}");
+  double sum = 0.0, squares = 0.0, most = 0.0;
+  for (std::uint64_t seed = 0; seed < 10'000; ++seed) {
+    for (const double x : draw(v, 0, {}, seed).velocity) {
+      sum += x;
+      squares += x * x;
+      most = std::max(most, std::abs(x));
+    }
+  }
+  EXPECT_NEAR(sum / 20'000, 0.0, 5.0 * 0.02 / std::sqrt(20'000.0));
+  EXPECT_NEAR(std::sqrt(squares / 20'000), 0.02 * 0.9866, 5.0 * 0.005 * 0.02);
+  EXPECT_LE(most, 0.06);
+  EXPECT_GT(most, 0.055);
+}
+
+TEST(Variation, AUniformDrawFillsItsRange) {
+  const Variation v = read("friction: {range: [0.6, 1]}");
+  double least = 2.0, most = 0.0;
+  for (std::uint64_t seed = 0; seed < 2'000; ++seed) {
+    const double friction = draw(v, 0, {}, seed).friction.value();
+    least = std::min(least, friction);
+    most = std::max(most, friction);
+  }
+  EXPECT_GE(least, 0.6);
+  EXPECT_LE(most, 1.0);
+  EXPECT_LT(least, 0.605);
+  EXPECT_GT(most, 0.995);
+  EXPECT_EQ(v.least_friction(), 0.6);
+}
+
+TEST(Variation, WhatIsPinnedLeavesTheOthersAsTheyAre) {
+  const Variation all = read(kAll);
+  const Variation pinned = read("{friction: 0.8, push: off, start: {rates: off}}", all);
+  const Draw a = draw(all, 6, kLinks, 3), b = draw(pinned, 6, kLinks, 3);
+  EXPECT_EQ(b.friction, 0.8);
+  EXPECT_FALSE(b.push.has_value());
+  EXPECT_EQ(b.rates, (std::array<double, 3>{}));
+  EXPECT_EQ(a.joints, b.joints);
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.masses, b.masses);
+  EXPECT_EQ(a.com, b.com);
+  EXPECT_EQ(a.command_delay, b.command_delay);
+  EXPECT_TRUE(draw(read("off", all), 6, kLinks, 3).values.empty());
+}
+
+TEST(Variation, APushHasItsImpulseAndComesInItsTime) {
+  const Variation v = read("push: {impulse: 1 N s, between: [3 s, 10 s], for: 50 ms}");
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const model::DrawnPush push = draw(v, 0, {}, seed).push.value();
+    EXPECT_DOUBLE_EQ(push.force * push.duration, 1.0);
+    EXPECT_GE(push.time, 3.0);
+    EXPECT_LE(push.time, 10.0);
+  }
+}
+
+TEST(Variation, MistakesAreTold) {
+  EXPECT_NE(problems("frition: 0.8").find("did you mean 'friction'?"), std::string::npos);
+  EXPECT_NE(problems("friction: {sd: 0.1}").find("1:11: error: a friction is no difference"),
+            std::string::npos);
+  EXPECT_NE(problems("friction: {range: [1, 0.5]}").find("error"), std::string::npos);
+  EXPECT_NE(problems("start: {velocity: {sd: 3 cm}}").find("3 cm"), std::string::npos);
+  EXPECT_NE(problems("start: {velocity: {}}").find("expected 'sd' or 'range'"), std::string::npos);
+  EXPECT_NE(problems("command_delay: {sd: 1 ms}").find("cannot be negative"), std::string::npos);
+  EXPECT_NE(problems("push: {impulse: 1 N s}").find("between"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footfall::tests
