@@ -206,7 +206,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["world"] = id.world;
   out["backend"] = id.backend;
   out["seed"] = id.seed;
-  out["end"] = result.end == RunEnd::finished ? "stopped" : run_end_name(result.end);
+  out["end"] = run_end_name(result.end);
   out["steps"] = f.steps;
   out["time_s"] = f.time;
   out["fell"] = f.fell;

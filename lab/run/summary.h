@@ -20,7 +20,7 @@ std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& beh
                                                   const hal::Hardware& hardware);
 
 // Of summary.json and `--json`: the key `format`. 2 counts runs under 4 s from the beginning, and
-// has fault_ticks.
+// has fault_ticks, and `finished` as an end.
 inline constexpr int kSummaryFormat = 2;
 
 struct RunIdentity {
