@@ -39,6 +39,7 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
                              std::uint64_t seed)
     : MujocoBackend(Empty{}, robot, world, seed) {
   model_ = model::compile_mjcf(scene_xml(robot, world), robot.model_path);
+  model::use_own_settings(*model_);
   data_ = mj_makeData(model_);
   mj_forward(model_, data_);
   for (const model::JointDescription& j : robot.joints) {
