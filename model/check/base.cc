@@ -33,12 +33,12 @@ void check_start(ModelContext& c, int base) {
              fmt::format("the floating base '{}' is tilted by {:.4g} deg: it would start so, and "
                          "the controller takes its z axis for up; expected an upright base (turn "
                          "the shapes inside it instead)",
-                         c.robot.floating_base, tilt / kDegree));
+                         c.robot.floating_base, degrees(tilt)));
   } else if (std::abs(yaw) > kSmall) {
     c.warn(c.place(mjOBJ_BODY, base, turning(c, base)),
            fmt::format("the floating base '{}' is turned by {:.4g} deg about the vertical: the "
                        "robot starts facing that way, while references and goals count from 0",
-                       c.robot.floating_base, yaw / kDegree));
+                       c.robot.floating_base, degrees(yaw)));
   }
   const double* const p = m.body_pos + 3 * base;
   if (std::hypot(p[0], p[1]) > 1e-6) {

@@ -14,7 +14,7 @@
 
 namespace footfall::model {
 
-inline constexpr double kDegree = std::numbers::pi / 180.0;
+inline double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
 
 class ModelContext {
  public:

@@ -43,14 +43,14 @@ void check_stop(ModelContext& c, int j) {
     c.warn(c.place(mjOBJ_JOINT, j, "range"),
            fmt::format("joint '{}' stops at {:.4g} and {:.4g} deg in the simulator, inside the "
                        "robot file's {:.4g} to {:.4g} deg: the control model has no stops",
-                       joint->name, range[0] / kDegree, range[1] / kDegree,
-                       joint->position_min / kDegree, joint->position_max / kDegree));
+                       joint->name, degrees(range[0]), degrees(range[1]),
+                       degrees(joint->position_min), degrees(joint->position_max)));
   }
   if (m.jnt_margin[j] > 0.0) {
     c.warn(c.place(mjOBJ_JOINT, j, "margin"),
            fmt::format("the stops of joint '{}' act {:.3g} deg before its limits (margin), in the "
                        "simulator only; expected 0",
-                       joint->name, m.jnt_margin[j] / kDegree));
+                       joint->name, degrees(m.jnt_margin[j])));
   }
   const double* const solref = m.jnt_solref + mjNREF * j;
   if (solref[0] != 0.02 || solref[1] != 1.0) {  // MuJoCo's defaults

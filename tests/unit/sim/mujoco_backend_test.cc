@@ -6,8 +6,6 @@
 #include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -74,40 +72,6 @@ TEST_F(Mujoco, TheCompiledModelIsThePhysicsThatFiguresName) {
   EXPECT_DOUBLE_EQ(m->opt.gravity[2], -9.81);
   EXPECT_NEAR(m->body_subtreemass[1], 20.0, 0.01);
   for (int i = 0; i < 6 * m->nbody; ++i) EXPECT_EQ(backend.data()->xfrc_applied[i], 0.0);
-}
-
-TEST_F(Mujoco, TheWorldsSettingsApplyWhateverTheRobotsFileSays) {
-  const std::string path = testing::TempDir() + "/footfall_settings.xml";
-  std::ofstream(path) << "<mujoco><option timestep=\"0.004\" integrator=\"RK4\" solver=\"PGS\" "
-                         "iterations=\"3\" impratio=\"1\" cone=\"pyramidal\" gravity=\"1 0 -2\" "
-                         "density=\"9\" wind=\"1 1 1\" collision=\"predefined\"><flag "
-                         "contact=\"disable\" energy=\"enable\"/></option><size njmax=\"1\"/>"
-                         "<default><geom contype=\"0\" conaffinity=\"0\" margin=\"0.1\" "
-                         "gap=\"0.05\"/></default><include file=\""
-                      << robot.model_path << "\"/></mujoco>";
-  auto expected = started();
-  robot.model_path = path;
-  auto backend = started();
-  const mjOption &is = backend.model()->opt, &should = expected.model()->opt;
-  EXPECT_EQ(is.timestep, should.timestep);
-  EXPECT_EQ(is.integrator, should.integrator);
-  EXPECT_EQ(is.solver, should.solver);
-  EXPECT_EQ(is.iterations, should.iterations);
-  EXPECT_EQ(is.impratio, should.impratio);
-  EXPECT_EQ(is.cone, should.cone);
-  EXPECT_EQ(is.density, 0.0);
-  EXPECT_EQ(is.collision, should.collision);
-  EXPECT_EQ(is.disableflags, 0);
-  EXPECT_EQ(is.enableflags, 0);
-  for (int k = 0; k < 3; ++k) EXPECT_EQ(is.gravity[k], should.gravity[k]);
-  for (int k = 0; k < 3; ++k) EXPECT_EQ(is.wind[k], 0.0);
-  const int ground = geom(backend.model(), "ground");
-  EXPECT_EQ(backend.model()->geom_contype[ground], 1);
-  EXPECT_EQ(backend.model()->geom_conaffinity[ground], 1);
-  EXPECT_EQ(backend.model()->geom_margin[ground], 0.0);
-  EXPECT_EQ(backend.model()->geom_gap[ground], 0.0);
-  EXPECT_GT(backend.model()->njmax, 1);
-  std::filesystem::remove(path);
 }
 
 TEST_F(Mujoco, TheFactsOfTheSummaryAreThoseOfTheModel) {
