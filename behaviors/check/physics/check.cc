@@ -83,6 +83,7 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
     check_internal_forces(context, control);
   }
   check_references(context);
+  check_feed_forward(context);
   check_gains(context);
   check_force_feedback(context);
   check_planners(context);
