@@ -102,21 +102,15 @@ int run(const char* behavior_name) {
     const tasks::WholeBodyController& law = loop.controller();
     const bool starts = now.has_other && now.transition_entered;
     const bool ended = previous.has_other && (!now.has_other || now.transition_entered);
-    if (loop.time() > kSettled && starts) {
-      // releases begins at weight 1 (the law left), loads at weight 0 (this law alone).
-      const double* before = now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      ends.add(largest_difference(loop.commands().tau.data(), before, n),
-               largest_difference(law.tau_primary(), law.tau_other(), n));
-    }
-    if (loop.time() > kSettled && ended) {
+    if (loop.time() > kSettled && (starts || ended)) {
+      // What was in force until now, on today's state, against what is commanded.
       tasks::WholeBodyController twin = law;  // same integrals
       const tasks::ActiveControl old = carried_to_end(previous, now);
       std::array<double, core::kMaxJoints> carried{};
       twin.compute(old, loop.ticks(), loop.sensors().tau.data(), carried.data());
-      const double* after =
-          now.has_other && now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      ends.add(largest_difference(carried.data(), after, n),
-               largest_difference(twin.tau_primary(), twin.tau_other(), n));
+      const tasks::WholeBodyController& plain = starts ? law : twin;
+      ends.add(largest_difference(carried.data(), loop.commands().tau.data(), n),
+               largest_difference(plain.tau_primary(), plain.tau_other(), n));
     }
     if (starts || ended) last_change = loop.time();
     const double step = loop.signals()[loop.behavior().layout.torque_step];
