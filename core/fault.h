@@ -28,6 +28,7 @@ enum class Fault : std::uint8_t {
   script_stuck,       // a script does not come back from a call
   swing_contact,      // a foot that should swing bears load for more than half of its phase
   condition,          // a task level is worse conditioned than `limits.condition`
+  load_air,           // a foot that swung is loaded without ground contact
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -41,7 +42,7 @@ constexpr std::string_view fault_name(Fault fault) {
       "fall",         "non_finite",   "torque.limit",  "torque.step",    "joint.limit",
       "swing.long",   "simulator",    "sensor.stale",  "imu.stale",      "mocap.stale",
       "tick.overrun", "planner.late", "execution",     "event.overflow", "rank.loss",
-      "no_estimate",  "script.stuck", "swing.contact", "condition"};
+      "no_estimate",  "script.stuck", "swing.contact", "condition",      "load.air"};
   return names[static_cast<std::size_t>(fault)];
 }
 

@@ -14,10 +14,6 @@
 namespace footfall::model {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 struct VfsDeleter {
   void operator()(mjVFS* vfs) const {
     mj_deleteVFS(vfs);
@@ -47,18 +43,30 @@ mjModel_* compile_mjcf(const std::string& xml, const std::string& what) {
   return m;
 }
 
-mjModel_* load_robot_model(const std::string& model_path) {
-  if (ends_with(model_path, ".urdf")) {
-    core::install_mujoco_error_handlers();
-    std::array<char, 1024> error{};
-    mjModel* m =
-        mj_loadXML(model_path.c_str(), nullptr, error.data(), static_cast<int>(error.size()));
-    if (!m) refuse(model_path, error.data());
-    return m;
-  }
+mjModel_* load_whole_model(const std::string& model_path) {
   return compile_mjcf(
+      "<mujoco><include file=\"" + model_path + "\"/><compiler discardvisual=\"false\"/></mujoco>",
+      model_path);
+}
+
+mjModel_* load_robot_model(const std::string& model_path) {
+  mjModel* const m = compile_mjcf(
       "<mujoco><compiler discardvisual=\"true\"/><include file=\"" + model_path + "\"/></mujoco>",
       model_path);
+  use_own_settings(*m);
+  return m;
+}
+
+void use_own_settings(mjModel& m) {
+  const mjOption set = m.opt;
+  mj_defaultOption(&m.opt);
+  m.opt.timestep = set.timestep;
+  m.opt.integrator = set.integrator;
+  m.opt.solver = set.solver;
+  m.opt.cone = set.cone;
+  m.opt.impratio = set.impratio;
+  m.opt.iterations = set.iterations;
+  m.opt.tolerance = set.tolerance;
 }
 
 std::vector<std::string> body_names(const std::string& model_path) {

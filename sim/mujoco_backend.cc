@@ -37,6 +37,7 @@ MujocoBackend::MujocoBackend(Empty, const model::RobotDescription& robot,
 MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDescription& world)
     : MujocoBackend(Empty{}, robot, world) {
   model_ = model::compile_mjcf(scene_xml(robot, world), robot.model_path);
+  model::use_own_settings(*model_);
   data_ = mj_makeData(model_);
   mj_forward(model_, data_);
   for (const model::JointDescription& j : robot.joints) {

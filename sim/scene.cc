@@ -30,10 +30,12 @@ const char* solver_name(Solver s) {
   return "Newton";
 }
 
-// The ground's friction must apply: with equal priority MuJoCo takes the larger one of a pair.
+// The ground's friction must apply: with equal priority MuJoCo takes the larger one of a pair. All
+// that defaults of the robot's file could change is written out.
 std::string contact_attributes(const WorldDescription& world) {
   const PhysicsSettings& p = world.physics;
   return fmt::format(
+      "contype=\"1\" conaffinity=\"1\" margin=\"0\" gap=\"0\" group=\"0\" "
       "priority=\"1\" condim=\"3\" friction=\"{:.17g} 0 0\" solref=\"{:.17g} {:.17g}\" "
       "solimp=\"{:.17g} {:.17g} {:.17g}\"",
       world.friction, p.solref[0], p.solref[1], p.solimp[0], p.solimp[1], p.solimp[2]);
@@ -44,7 +46,7 @@ std::string terrain_xml(const WorldDescription& world) {
   int index = 0;
   for (const TerrainBox& box : world.terrain) {
     xml += fmt::format(
-        "<geom name=\"terrain_{}\" type=\"box\" pos=\"{:.17g} {:.17g} {:.17g}\" "
+        "<geom name=\"terrain_{}\" type=\"box\" quat=\"1 0 0 0\" pos=\"{:.17g} {:.17g} {:.17g}\" "
         "size=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
         index++, box.at[0], box.at[1], 0.5 * box.size[2], 0.5 * box.size[0], 0.5 * box.size[1],
         0.5 * box.size[2], contact_attributes(world));
@@ -59,15 +61,18 @@ std::string scene_xml(const model::RobotDescription& robot, const WorldDescripti
   const double timestep = robot.period_s() / p.steps_per_tick;
   std::string xml = "<mujoco model=\"footfall\">\n";
   xml += "<compiler discardvisual=\"true\"/>\n";
+  xml += fmt::format("<include file=\"{}\"/>\n", robot.model_path);
+  // Behind the robot's file: what is written last applies.
   xml += fmt::format(
       "<option timestep=\"{:.17g}\" integrator=\"{}\" solver=\"{}\" cone=\"{}\" "
       "impratio=\"{:.17g}\" iterations=\"{}\" tolerance=\"{:.17g}\"/>\n",
       timestep, integrator_name(p.integrator), solver_name(p.solver),
       p.cone == Cone::elliptic ? "elliptic" : "pyramidal", p.impratio, p.iterations, p.tolerance);
-  xml += fmt::format("<include file=\"{}\"/>\n", robot.model_path);
+  xml += "<size njmax=\"-1\" nconmax=\"-1\" nstack=\"-1\"/>\n";
   xml += "<worldbody>\n";
-  xml += fmt::format("<geom name=\"ground\" type=\"plane\" size=\"0 0 .5\" {}/>\n",
-                     contact_attributes(world));
+  xml += fmt::format(
+      "<geom name=\"ground\" type=\"plane\" pos=\"0 0 0\" quat=\"1 0 0 0\" size=\"0 0 .5\" {}/>\n",
+      contact_attributes(world));
   xml += terrain_xml(world);
   xml += "</worldbody>\n</mujoco>\n";
   return xml;

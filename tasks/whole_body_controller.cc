@@ -206,6 +206,20 @@ void WholeBodyController::report(const ActiveControl& control) noexcept {
       result_.force[at(control.other.contacts[at(i)])][k] += w * other_.solution().f[3 * at(i) + k];
     }
   }
+  // The frozen form's moving feet, whose force the primary law takes as given.
+  const bool frozen = control.has_other && control.form == TransitionForm::frozen;
+  for (int i = 0; frozen && i < control.moving_contact_count; ++i) {
+    const int contact = control.moving_contacts[at(i)];
+    if (place_in(control.primary, contact) >= 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      result_.force[at(contact)][k] = control.other_weight * frozen_force_[at(contact)][k];
+    }
+  }
+  report_tasks(control);
+}
+
+void WholeBodyController::report_tasks(const ActiveControl& control) noexcept {
+  const WboscSolution& a = primary_.solution();
   int row = 0;
   int level = 0;
   for (int t = 0; t < control.primary.task_count; ++t) {

@@ -84,6 +84,7 @@ class WholeBodyController {
   void sample_frozen_force(const ActiveControl& control) noexcept;
   void add_frozen_force(const ActiveControl& control) noexcept;
   void report(const ActiveControl& control) noexcept;
+  void report_tasks(const ActiveControl& control) noexcept;
 
   const model::ControlModel& model_;
   std::vector<double> torque_limits_;

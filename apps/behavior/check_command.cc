@@ -17,6 +17,7 @@
 #include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
 #include "lab/suite/discovery.h"
+#include "model/check/check.h"
 #include "model/control_model.h"
 #include "sim/world/description.h"
 
@@ -29,9 +30,10 @@ struct CheckOptions {
   bool strict = false, json = false;
 };
 
-void check_model(const model::RobotDescription& robot, core::Diagnostics& diagnostics) {
+void check_fit(const model::RobotDescription& robot, core::Diagnostics& diagnostics) {
+  if (!model::check_model(robot, diagnostics)) return;
   try {
-    model::ControlModel model(robot);
+    const model::ControlModel model(robot);
   } catch (const std::exception& error) {
     diagnostics.error({diagnostics.add_file(robot.path), 0, 0}, "model", error.what());
   }
@@ -39,7 +41,7 @@ void check_model(const model::RobotDescription& robot, core::Diagnostics& diagno
 
 void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
   const model::RobotDescription robot = model::load_robot(path, diagnostics);
-  if (!diagnostics.has_errors()) check_model(robot, diagnostics);
+  if (!diagnostics.has_errors()) check_fit(robot, diagnostics);
 }
 
 void check_world(const std::string& path, core::Diagnostics& diagnostics) {

@@ -33,6 +33,9 @@ FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool s
     Phase& phase = phases_[at(c)];
     const bool held = holds(behavior_, spec, c);
     if (!stepping || held || spec.contacts.empty()) {
+      if (held && phase.ticks > 0 && !sensors.contact[at(c)]) {
+        findings.add(core::Fault::load_air, {c, static_cast<double>(phase.ticks) * period, 0.0});
+      }
       const std::int64_t excess = 2 * phase.loaded - phase.ticks;
       if (held && excess > 0) {
         findings.add(core::Fault::swing_contact, {c, static_cast<double>(phase.loaded) * period,

@@ -1,5 +1,6 @@
 // Notices in a tick that a foot that should swing bears load: for more than half of its phase, from
-// the tick in which the control law begins to let go of it to the one that begins to load it.
+// the tick in which the control law begins to let go of it to the one that begins to load it; and
+// that it is loaded then without ground contact.
 #pragma once
 
 #include <array>

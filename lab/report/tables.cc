@@ -72,7 +72,8 @@ std::string outcome_card(const Log& log, const json& summary) {
   if (fell || end == "fall") return card("outcome", "fell", why, "bad");
   if (end == "fault") return card("outcome", "stopped by a fault", why, "bad");
   if (!log.complete) return card("outcome", "cut off", "the log is incomplete", "warn");
-  if (end == "finished") return card("outcome", "finished", "the behavior reached its final state", "good");
+  if (end == "finished")
+    return card("outcome", "finished", "the behavior reached its final state", "good");
   if (end == "stopped") return card("outcome", "stopped by hand", "", "warn");
   return card("outcome", "no fall", end.empty() ? "" : "end: " + end, "good");
 }

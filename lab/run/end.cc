@@ -23,6 +23,7 @@ const char* unit_of(Fault fault) {
   switch (fault) {
     case Fault::swing_too_long:
     case Fault::swing_contact:
+    case Fault::load_air:
       return "s";
     case Fault::joint_limit:
       return "rad";
@@ -39,7 +40,8 @@ const std::string& place_name(const ControlLoop& loop, Fault fault,
   const model::RobotDescription& robot = loop.behavior().robot;
   const auto index = static_cast<std::size_t>(place.joint);
   if (fault == Fault::condition) return loop.behavior().task_instances[index].name;
-  const bool of_contact = fault == Fault::swing_too_long || fault == Fault::swing_contact;
+  const bool of_contact =
+      fault == Fault::swing_too_long || fault == Fault::swing_contact || fault == Fault::load_air;
   return of_contact ? robot.contacts[index].name : robot.joints[index].name;
 }
 

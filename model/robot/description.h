@@ -59,7 +59,7 @@ struct SensorDescription {
 struct RobotDescription {
   std::string name;
   std::string path;        // of the robot file
-  std::string model_path;  // MJCF or URDF, absolute
+  std::string model_path;  // MJCF, absolute
   std::string floating_base;
   std::int64_t rate_mhz = 1'000'000;  // servo rate in millihertz (exact)
   double standing_height = 0.0;       // m, origin of the floating base above the ground

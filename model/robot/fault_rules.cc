@@ -64,6 +64,10 @@ constexpr auto kRules = std::to_array<FaultRule>({
      "a task's level is worse conditioned than `limits.condition`",
      Reaction::keep_going,
      {}},
+    {Fault::load_air,
+     "a foot that swung is loaded without ground contact",
+     Reaction::keep_going,
+     {}},
 });
 
 constexpr bool in_order() {
@@ -110,6 +114,7 @@ std::string why_never(const RobotDescription& robot, Fault fault) {
       return robot.torque_step_limit > 0.0 ? "" : "it has no `limits: {torque_step: ...}`";
     case Fault::swing_too_long:
     case Fault::swing_contact:
+    case Fault::load_air:
       return robot.contacts.empty() ? "it has no `contacts`" : "";
     default:
       return {};

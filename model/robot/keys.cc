@@ -20,7 +20,7 @@ constexpr KeySpec kRobotRows[] = {
         "`NAME: off` removes, `KEY+:` appends to a list"),
     key("name", name_of("a robot"), "its name in logs and reports").otherwise("the folder's name"),
     key("doc", text_of("a text"), "the robot, in one line"),
-    key("model", text_of("the path of an MJCF or URDF file"),
+    key("model", text_of("the path of an MJCF file"),
         "bodies, joints and sites, relative to this file")
         .required(),
     key("floating_base", text_of("the name of a body"), "the free-floating body").required(),

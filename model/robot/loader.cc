@@ -16,6 +16,7 @@
 #include "model/robot/description.h"
 #include "model/robot/fault_rules.h"
 #include "model/robot/keys.h"
+#include "model/source/mjcf_source.h"
 
 namespace footfall::model {
 
@@ -80,17 +81,23 @@ class RobotLoader {
 
   void read_model(const YamlNode& node) {
     namespace fs = std::filesystem;
-    const auto model = core::read_text(node, diagnostics_, "the path of an MJCF or URDF file");
+    const auto model = core::read_text(node, diagnostics_, "the path of an MJCF file");
     if (!model) return;
     // Beside the file that says so, which may be the base of this one.
     const fs::path folder = fs::path(diagnostics_.file(node.mark.file)).parent_path();
     const fs::path path = fs::absolute(folder / *model).lexically_normal();
     std::error_code error;
-    if (fs::is_regular_file(path, error)) {
-      robot_.model_path = path.string();
-    } else {
+    if (!fs::is_regular_file(path, error)) {
       diagnostics_.error(node.mark, "model", fmt::format("no model file '{}'", path.string()));
+      return;
     }
+    robot_.model_path = path.string();
+    const MjcfSource source(robot_.model_path);
+    if (source.roots().empty() || source.roots().front()->tag != "robot") return;
+    diagnostics_.error(node.mark, "model",
+                       fmt::format("'{}' is a URDF file, which this version does not read; "
+                                   "expected MJCF with a free joint, motors and sites",
+                                   *model));
   }
 
   // A value above zero, if the key is there.

@@ -52,6 +52,14 @@ tasks::ActiveControl carried_to_end(tasks::ActiveControl old, const tasks::Activ
   return old;
 }
 
+// Other feet without any transition, or with one that lasts no tick: a change like an end.
+bool jumps(const tasks::ActiveControl& old, const tasks::ActiveControl& now) {
+  const tasks::ControlSet &a = old.primary, &b = now.primary;
+  return !old.has_other && !now.has_other &&
+         !std::equal(a.contacts.begin(), a.contacts.begin() + a.contact_count, b.contacts.begin(),
+                     b.contacts.begin() + b.contact_count);
+}
+
 // Torque differences at the starts and ends of transitions, Nm.
 struct Ends {
   double declared = 0.0, undeclared_min = 1e9, undeclared_max = 0.0;
@@ -102,29 +110,24 @@ int run(const char* behavior_name) {
     const tasks::WholeBodyController& law = loop.controller();
     const bool starts = now.has_other && now.transition_entered;
     const bool ended = previous.has_other && (!now.has_other || now.transition_entered);
-    if (loop.time() > kSettled && starts) {
-      // releases begins at weight 1 (the law left), loads at weight 0 (this law alone).
-      const double* before = now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      ends.add(largest_difference(loop.commands().tau.data(), before, n),
-               largest_difference(law.tau_primary(), law.tau_other(), n));
-    }
-    if (loop.time() > kSettled && ended) {
+    const bool jumped = loop.ticks() > 0 && jumps(previous, now);
+    if (loop.time() > kSettled && (starts || ended || jumped)) {
+      // What was in force until now, on today's state, against what is commanded.
       tasks::WholeBodyController twin = law;  // same integrals
       const tasks::ActiveControl old = carried_to_end(previous, now);
       std::array<double, core::kMaxJoints> carried{};
       twin.compute(old, loop.ticks(), loop.sensors().tau.data(), carried.data());
-      const double* after =
-          now.has_other && now.other_weight > 0.5 ? law.tau_other() : law.tau_primary();
-      ends.add(largest_difference(carried.data(), after, n),
-               largest_difference(twin.tau_primary(), twin.tau_other(), n));
+      const tasks::WholeBodyController& plain = starts ? law : twin;
+      const double step = largest_difference(carried.data(), loop.commands().tau.data(), n);
+      ends.add(step, jumped ? step : largest_difference(plain.tau_primary(), plain.tau_other(), n));
     }
-    if (starts || ended) last_change = loop.time();
-    const double step = loop.signals()[loop.behavior().layout.torque_step];
+    if (starts || ended || jumped) last_change = loop.time();
+    const double tick_step = loop.signals()[loop.behavior().layout.torque_step];
     if (loop.time() > kSettled && loop.time() - last_change <= kNear) {
       if (last_impact == loop.time()) {
-        impact_step = std::max(impact_step, step);
+        impact_step = std::max(impact_step, tick_step);
       } else {
-        near_step = std::max(near_step, step);
+        near_step = std::max(near_step, tick_step);
       }
     }
     previous = now;

@@ -9,6 +9,7 @@
 #include "behaviors/check/physics/parts.h"
 #include "behaviors/check/physics/postures.h"
 #include "core/index.h"
+#include "model/check/check.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -56,6 +57,7 @@ void check_contact_types(const Behavior& behavior, const ControlSpec& control,
 void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
                    const PhysicsWorld& world) {
   if (!behavior.has_robot) return;
+  if (!model::check_model(behavior.robot, diagnostics)) return;
   model::ControlModel model(behavior.robot);
   PhysicsLaw law(behavior, model);
   const std::vector<model::State> postures = physics_postures(behavior.robot);
@@ -81,6 +83,7 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
     check_internal_forces(context, control);
   }
   check_references(context);
+  check_feed_forward(context);
   check_gains(context);
   check_force_feedback(context);
   check_planners(context);

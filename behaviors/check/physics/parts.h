@@ -38,6 +38,8 @@ void check_internal_forces(PhysicsContext& context, const ControlSpec& control);
 void check_references(PhysicsContext& context);
 // Feedback of internal forces beyond what the loop bears (force_feedback.cc).
 void check_force_feedback(PhysicsContext& context);
+// References that move without a velocity of their own (feed_forward.cc).
+void check_feed_forward(PhysicsContext& context);
 // Gains that are unstable at the robot's rate (gain_stability.cc).
 void check_gains(PhysicsContext& context);
 // Step-to-step maps of the planners (planner_stability.cc).

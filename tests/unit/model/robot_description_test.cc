@@ -120,6 +120,14 @@ TEST_F(RobotDescriptionTest, AWholeFileIsRead) {
   EXPECT_EQ(robot.find_group("nobody"), -1);
 }
 
+TEST_F(RobotDescriptionTest, AUrdfIsRefusedInOneLineWhateverItIsCalled) {
+  std::ofstream(folder_ / "other.xml") << "<?xml version=\"1.0\"?><!-- <mujoco/> -->\n"
+                                          "<robot name=\"x\"><link name=\"base\"/></robot>";
+  EXPECT_EQ(problems("biped.xml", "other.xml"),
+            "3:8: error: 'other.xml' is a URDF file, which this version does not read; expected "
+            "MJCF with a free joint, motors and sites\n");
+}
+
 TEST_F(RobotDescriptionTest, ReactionsHaveSafeDefaults) {
   const RobotDescription robot = load(kRobot);
   const auto reaction = [&robot](core::Fault fault) {

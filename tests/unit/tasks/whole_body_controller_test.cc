@@ -203,6 +203,10 @@ TEST_F(Controller, TheFrozenFormIsTheDualControllerAtFullWeight) {
         w * Lambda * p.levels[0].J * Ainv * Ns.transpose() * J_sw.transpose() * on_ground;
     const Matrix expected = naive_wbosc(p).tau + J_star.transpose() * f_trans;
     EXPECT_LE((tau() - expected).max_abs(), kBar * dual.max_abs());
+    // The moving foot's force is reported: what the law counts on.
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_DOUBLE_EQ(controller_.result().force[kLeftFoot][k], w * f_sw[k]);
+    }
   }
 }
 

@@ -8,7 +8,9 @@ namespace {
 
 std::string asking(const std::string& invoke) {
   return "behavior: 1\nrobot: hume\nevents: {leave: x}\n"
-         "planners: {foot: {type: velocity_reversal, kappa: 0.4, reversal: 185 ms}}\n"
+         "planners: {foot: {type: velocity_reversal, kappa: 0.4, reversal: 185 ms, goal: [0.5 m, "
+         "-0.2 "
+         "m]}}\n"
          "machine:\n  states:\n    a:\n      after: 100 ms\n      to: b\n"
          "      transitions: [{on: leave, to: b}, {on: planner.foot.done, do: [{mark: done}]},"
          " {on: planner.foot.late, do: [{mark: late}]}, {on: planner.foot.failed, do: [{mark: "
@@ -34,6 +36,16 @@ class Planner : public testing::Test {
     for (const int m : run->machine.marks())
       names += run->behavior->marks[static_cast<std::size_t>(m)];
     return names;
+  }
+  // The law itself on the robot above, `ticks` after the state began.
+  behaviors::FootPlan closed_form(int ticks) const {
+    behaviors::FootPlannerInput input;
+    input.com = {0.0, 0.1};
+    input.com_height = 0.91;
+    input.switch_in = 0.2 - ticks / 1500.0;
+    input.swing_side = 1.0;
+    input.goal = {0.5, -0.2};
+    return behaviors::plan_foot(run->behavior->planners[0].spec, input);
   }
   static behaviors::PlanAnswer answer(const behaviors::PlanRequest& request, double x = 0.3) {
     return {request.planner, request.sequence, true, {x, 0.2, 0.01}, {0.1, 0.2}, {0.3, 0.4}, 0.0};
@@ -120,16 +132,12 @@ TEST_F(Planner, ALateAnswerIsReplacedByTheClosedForm) {
   EXPECT_EQ(run->signal("planner.foot.late"), 0.0);
   run->tick();  // 30 periods after the request
   EXPECT_EQ(run->signal("planner.foot.late"), 1.0);
-  behaviors::FootPlannerInput input;
-  input.com = {0.0, 0.1};
-  input.com_height = 0.91;
-  input.switch_in = 0.2 - 45.0 / 1500.0;
-  input.swing_side = 1.0;
-  const auto plan = behaviors::plan_foot(run->behavior->planners[0].spec, input);
+  const behaviors::FootPlan plan = closed_form(45);
+  EXPECT_NEAR(run->signal("planner.foot.target.x"), plan.target[0], 1e-12);
   EXPECT_NEAR(run->signal("planner.foot.target.y"), plan.target[1], 1e-12);
   EXPECT_EQ(run->machine.faults().of(core::Fault::planner_late), 1);
   run->machine.deliver(answer(request));  // too late
-  EXPECT_NE(run->signal("planner.foot.target.x"), 0.3);
+  EXPECT_NEAR(run->signal("planner.foot.target.x"), plan.target[0], 1e-12);
   run->tick();
   EXPECT_EQ(marks(), "late");
 }
@@ -144,7 +152,9 @@ TEST_F(Planner, AnExitWithoutAnAnswerTakesTheClosedForm) {
   run->run_to(15);
   run->machine.raise(run->behavior->find_event("leave"));
   run->tick();
-  EXPECT_NE(run->signal("planner.foot.target.y"), 0.0);
+  const behaviors::FootPlan plan = closed_form(16);
+  EXPECT_NEAR(run->signal("planner.foot.target.x"), plan.target[0], 1e-12);
+  EXPECT_NEAR(run->signal("planner.foot.target.y"), plan.target[1], 1e-12);
 }
 TEST_F(Planner, AFailedAnswerChangesNothingAndIsAnEvent) {
   begin("at: 10 ms");

@@ -38,7 +38,8 @@ constexpr int kSwing = 15;  // ticks of its limits.swing where that is tried
 // Level 1 has rank 3 in the nominal posture; with straight legs its height cannot be moved.
 // Where a swing is tried the left foot is let go of, and stays on the ground.
 std::string behavior_text(const std::string& robot, std::string_view fault) {
-  const bool swings = fault == core::fault_name(Fault::swing_contact);
+  const bool lands = fault == core::fault_name(Fault::load_air);  // in kCause
+  const bool swings = lands || fault == core::fault_name(Fault::swing_contact);
   return fmt::format(R"(
 behavior: 1
 robot: {}
@@ -60,13 +61,16 @@ machine:
         pose: {{type: joint_posture, priority: 2, gains: {{kp: 2000, kd: 40}}, reference: entry}}
       invoke: [{{planner: foot, at: 0 s, every: 0.5 ms, deadline: 2 ms, on_late: keep_last,
                  with: {{stance: right_foot, swing: left_foot, switch_in: 100 ms}}}}]
+      transitions: [{}]
+    both: {{contacts: [right_foot, left_foot], tasks: {{pose: {{type: joint_posture, priority: 1, gains: {{kp: 2000, kd: 40}}, reference: entry}}}}}}
     limp: {{contacts: [], tasks: {{rest: {{type: joint_damping, priority: 1, gains: {{kd: 5}}}}}}}}
 )",
                      robot,
                      fault == core::fault_name(Fault::script_stuck)
                          ? "scripts: {files: slow.lua, deadline: 20 ms}\n"
                          : "",
-                     fault, swings ? "right_foot" : "right_foot, left_foot");
+                     fault, swings ? "right_foot" : "right_foot, left_foot",
+                     lands ? fmt::format("{{after: {} ms, to: both}}", (kCause - 0.5) / 1.5) : "");
 }
 
 // About half a second in one function of Lua's library, which counts no instructions.
@@ -104,6 +108,8 @@ void bend_slightly(hal::Sensors& s) {
   }
 }
 
+void lift_left(hal::Sensors& s) { s.contact[1] = false; }
+
 void raise(engine::ControlLoop& loop, const char* event, int times) {
   for (int k = 0; k < times; ++k) loop.machine().raise(loop.behavior().find_event(event));
 }
@@ -123,7 +129,7 @@ Provocation provocation(Fault fault) {
     case Fault::joint_limit:
       return {.spoil = [](hal::Sensors& s) { s.q[0] = 1.0; }, .spoiled = 1};  // beyond 50 degrees
     case Fault::swing_too_long:
-      return {.spoil = [](hal::Sensors& s) { s.contact[1] = false; }, .delay = kSwing};
+      return {.spoil = lift_left, .delay = kSwing};
     case Fault::simulator_warning:
       return {.spoil = [](hal::Sensors& s) { s.backend_fault = true; }};
     case Fault::sensor_stale:
@@ -159,6 +165,8 @@ Provocation provocation(Fault fault) {
     case Fault::swing_contact:  // since the first tick: beyond half of limits.swing in kCause
       return {
           .spoil = [](hal::Sensors& s) { s.contact[1] = true; }, .from = 0, .after_machine = true};
+    case Fault::load_air:
+      return {.spoil = lift_left, .from = 0, .after_machine = true};
     case Fault::condition:
       return {.spoil = bend_slightly, .spoiled = 1, .after_machine = true};
     case Fault::count:

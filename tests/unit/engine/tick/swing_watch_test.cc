@@ -29,7 +29,8 @@ machine:
 }
 
 // The left foot touches the ground in the first `loaded` ticks of each swing.
-std::int64_t faults_of(const std::string& text, int loaded, int ticks) {
+std::int64_t faults_of(const std::string& text, int loaded, int ticks,
+                       Fault fault = Fault::swing_contact) {
   StubRig rig(text, 1e6);
   rig.hardware->spoil = [loaded](hal::Sensors& sensors, std::int64_t tick) {
     const std::int64_t in_cycle = tick % (2 * kPhase);
@@ -37,7 +38,7 @@ std::int64_t faults_of(const std::string& text, int loaded, int ticks) {
   };
   rig.loop->start();
   for (int k = 0; k < ticks; ++k) rig.loop->tick();
-  return rig.faults(Fault::swing_contact);
+  return rig.faults(fault);
 }
 
 TEST(SwingWatch, AFootThatBearsLoadForMoreThanHalfOfItsSwingIsCountedOnceASwing) {
@@ -46,6 +47,21 @@ TEST(SwingWatch, AFootThatBearsLoadForMoreThanHalfOfItsSwingIsCountedOnceASwing)
   EXPECT_EQ(faults_of(text, kPhase / 2 + 2, 6 * kPhase + 5), 3);
   EXPECT_EQ(faults_of(text, kPhase / 2 - 2, 6 * kPhase + 5), 0);
   EXPECT_EQ(faults_of(text, 0, 6 * kPhase + 5), 0);
+}
+
+// The sensors of a tick are those before it: the foot is back one tick after the law takes it, or
+// with it.
+TEST(SwingWatch, AFootThatIsTakenBackInTheAirIsCountedOnceASwing) {
+  const std::string text = stepping("[right_foot]", "on_entry: [{mark: step}], ");
+  EXPECT_EQ(faults_of(text, 0, 6 * kPhase + 5, Fault::load_air), 0);
+  StubRig rig(text, 1e6);
+  rig.hardware->spoil = [](hal::Sensors& sensors, std::int64_t tick) {
+    sensors.contact[kLeft] = tick % (2 * kPhase) > 1 && tick % (2 * kPhase) < kPhase;
+  };
+  rig.loop->start();
+  for (int k = 0; k < 6 * kPhase + 5; ++k) rig.loop->tick();
+  EXPECT_EQ(rig.faults(Fault::load_air), 3);
+  EXPECT_EQ(rig.loop->last_place(Fault::load_air).joint, kLeft);
 }
 
 TEST(SwingWatch, OnlyOfABehaviorThatStepsAndWhileAnotherFootHolds) {
