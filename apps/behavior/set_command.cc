@@ -20,7 +20,7 @@ namespace {
 struct SetOptions {
   std::string file, robot, to;
   std::vector<std::string> settings;
-  bool dry_run = false, yes = false;
+  bool into_base = false, dry_run = false, yes = false;
 };
 
 // One number of a value in SI; bare numbers are SI.
@@ -77,11 +77,13 @@ int set_values(const SetOptions& options) {
   }
   print_diagnostics(diagnostics);
   if (diagnostics.has_errors()) return kBadInput;
-  const auto plan = behaviors::plan_save(path, load, values, options.to, diagnostics);
+  const behaviors::SaveTarget target{options.to, options.into_base, installed_folders()};
+  const auto plan = behaviors::plan_save(path, load, values, target, diagnostics);
   print_diagnostics(diagnostics);
   for (const std::string& reason : plan.refusals) fmt::print(stderr, "error: {}\n", reason);
   if (plan.refused()) return kBadInput;
-  return show_and_write(plan, options.file, options.dry_run, options.yes);
+  return show_and_write(plan, options.to.empty() ? options.file : options.to, options.dry_run,
+                        options.yes);
 }
 
 }  // namespace
@@ -96,8 +98,12 @@ void add_set_command(CLI::App& app, int& exit_code) {
       ->add_option("NAME=VALUE", options->settings,
                    "Parameters and gains, values as in YAML: lift_time=160ms, goal.x=1m")
       ->required();
-  command->add_option("--to", options->to,
-                      "Writes to this overlay, a new or existing file with FILE as base");
+  auto* to = command->add_option(
+      "--to", options->to, "Writes to this overlay, a new or existing file with FILE as base");
+  command
+      ->add_flag("--into-base", options->into_base,
+                 "Writes each value where it is defined, also into a base of FILE")
+      ->excludes(to);
   command->add_option("--robot", options->robot, "Robot, instead of the file's");
   auto* dry = command->add_flag("--dry-run", options->dry_run, "Shows the diff, writes nothing");
   command->add_flag("--yes", options->yes, "Writes without asking")->excludes(dry);

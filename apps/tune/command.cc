@@ -108,9 +108,12 @@ void add_files(CLI::App& tune, const Options& o, int& exit_code) {
   CLI::App* save = add_action(tune, o, exit_code, "save",
                               "Saves the current values to the behavior's file", tune_save);
   save->add_option("NAME", o->names, "Only these; names or patterns");
-  save->add_option(
+  CLI::Option* const to = save->add_option(
       "--to", o->file,
       "Writes to this file: a new overlay, which begins with `base:`, or an existing one");
+  save->add_flag("--into-base", o->into_base,
+                 "Writes each value where it is defined, also into a base of the file that runs")
+      ->excludes(to);
   save->add_flag("--yes", o->yes, "Writes without asking");
   save->add_flag("--dry-run", o->dry_run, "Shows what would change, writes nothing");
   save->footer("Example: footfall tune save --to mine.yaml");

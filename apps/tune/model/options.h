@@ -23,7 +23,7 @@ struct TuneOptions {
   int count = 1;               // number of undo or redo steps
   bool only_names = false;
   std::string file;  // key FILE, save --to FILE
-  bool yes = false, dry_run = false;
+  bool yes = false, dry_run = false, into_base = false;
   double duration = 0.0;  // s, of watch; 0: until Ctrl-C
   double every = 0.0;     // s between lines of watch; 0: each sample
 };
