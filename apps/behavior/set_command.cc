@@ -40,6 +40,14 @@ std::optional<behaviors::NamedValue> read_setting(const behaviors::Behavior& beh
   if (part.parameter < 0 || node.is_null()) return value;  // plan_save() reports the reason
   const auto& info = behavior.parameters[static_cast<std::size_t>(part.parameter)];
   const std::size_t size = part.component < 0 ? static_cast<std::size_t>(info.size) : 1;
+  if (size > 1 && !node.is_sequence() && !info.gain) {
+    diagnostics.error(
+        node.mark, "expected",
+        fmt::format("expected {} values, \"{}=[...]\", or one by its name, {}={}; one "
+                    "number for all is for gains",
+                    size, name, value_name(info, 0), text));
+    return std::nullopt;
+  }
   const std::vector<core::YamlNode> items =
       node.is_sequence() ? node.items : std::vector<core::YamlNode>(size, node);
   if (items.size() != size) {

@@ -158,7 +158,7 @@ int run_behavior(RunOptions options) {
                          world.name,      backend.hardware->name(),
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware)};
-  const auto link = attach_link(options, loop, spec);
+  const auto link = attach_link(options, loop, world, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();

@@ -49,11 +49,8 @@ std::string cut_change(const Behavior& behavior, std::span<const behaviors::Slot
   }
   const bool whole = count == at(info.size);
   if (!whole) count = 1;
-  std::string text = info.name, list;
-  if (!whole) {
-    const int component = slot - info.slot;
-    text += info.size <= 3 ? fmt::format(".{}", "xyz"[component]) : fmt::format("[{}]", component);
-  }
+  const std::string text = whole ? info.name : value_name(info, slot - info.slot);
+  std::string list;
   for (const auto& [ignored, value] : values.first(count)) {
     list += (list.empty() ? "" : ", ") + number_with_unit(value, info.dimension);
   }
