@@ -20,7 +20,7 @@ using behaviors::ParameterInfo;
 
 constexpr std::size_t kMaxName = 96;       // bytes, for a name in a text
 constexpr std::size_t kMaxReasons = 32;    // in one answer
-constexpr std::size_t kMaxReason = 240;    // bytes
+constexpr std::size_t kMaxReason = 480;    // bytes
 constexpr std::size_t kMaxMentioned = 16;  // in one text
 constexpr std::size_t kFewChanges = 32;    // always evaluated
 
