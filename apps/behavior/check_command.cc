@@ -15,6 +15,7 @@
 #include "core/text/json_text.h"
 #include "core/text/search_folders.h"
 #include "core/text/whole_file.h"
+#include "lab/scenario/edits.h"
 #include "lab/scenario/loader.h"
 #include "lab/suite/discovery.h"
 #include "model/check/check.h"
@@ -112,6 +113,7 @@ void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
     if (error) diagnostics.error(item.mark, item.id, item.text);
     if (!error) diagnostics.warning(item.mark, item.id, item.text);
   }
+  if (!diagnostics.has_errors()) lab::check_edits(scenario, world, diagnostics);
 }
 
 // File kinds by their first key. A file without a kind is checked as a behavior, which reports it.

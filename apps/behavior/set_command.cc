@@ -20,7 +20,7 @@ namespace {
 struct SetOptions {
   std::string file, robot, to;
   std::vector<std::string> settings;
-  bool dry_run = false, yes = false;
+  bool into_base = false, dry_run = false, yes = false;
 };
 
 // One number of a value in SI; bare numbers are SI.
@@ -40,6 +40,14 @@ std::optional<behaviors::NamedValue> read_setting(const behaviors::Behavior& beh
   if (part.parameter < 0 || node.is_null()) return value;  // plan_save() reports the reason
   const auto& info = behavior.parameters[static_cast<std::size_t>(part.parameter)];
   const std::size_t size = part.component < 0 ? static_cast<std::size_t>(info.size) : 1;
+  if (size > 1 && !node.is_sequence() && !info.gain) {
+    diagnostics.error(
+        node.mark, "expected",
+        fmt::format("expected {} values, \"{}=[...]\", or one by its name, {}={}; one "
+                    "number for all is for gains",
+                    size, name, value_name(info, 0), text));
+    return std::nullopt;
+  }
   const std::vector<core::YamlNode> items =
       node.is_sequence() ? node.items : std::vector<core::YamlNode>(size, node);
   if (items.size() != size) {
@@ -77,11 +85,13 @@ int set_values(const SetOptions& options) {
   }
   print_diagnostics(diagnostics);
   if (diagnostics.has_errors()) return kBadInput;
-  const auto plan = behaviors::plan_save(path, load, values, options.to, diagnostics);
+  const behaviors::SaveTarget target{options.to, options.into_base, installed_folders()};
+  const auto plan = behaviors::plan_save(path, load, values, target, diagnostics);
   print_diagnostics(diagnostics);
   for (const std::string& reason : plan.refusals) fmt::print(stderr, "error: {}\n", reason);
   if (plan.refused()) return kBadInput;
-  return show_and_write(plan, options.file, options.dry_run, options.yes);
+  return show_and_write(plan, options.to.empty() ? options.file : options.to, options.dry_run,
+                        options.yes);
 }
 
 }  // namespace
@@ -96,8 +106,12 @@ void add_set_command(CLI::App& app, int& exit_code) {
       ->add_option("NAME=VALUE", options->settings,
                    "Parameters and gains, values as in YAML: lift_time=160ms, goal.x=1m")
       ->required();
-  command->add_option("--to", options->to,
-                      "Writes to this overlay, a new or existing file with FILE as base");
+  auto* to = command->add_option(
+      "--to", options->to, "Writes to this overlay, a new or existing file with FILE as base");
+  command
+      ->add_flag("--into-base", options->into_base,
+                 "Writes each value where it is defined, also into a base of FILE")
+      ->excludes(to);
   command->add_option("--robot", options->robot, "Robot, instead of the file's");
   auto* dry = command->add_flag("--dry-run", options->dry_run, "Shows the diff, writes nothing");
   command->add_flag("--yes", options->yes, "Writes without asking")->excludes(dry);

@@ -167,7 +167,7 @@ int run_behavior(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware),
                          drawn.values};
-  const auto link = attach_link(options, loop, spec);
+  const auto link = attach_link(options, loop, world, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();

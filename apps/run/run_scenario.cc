@@ -15,6 +15,7 @@
 #include "core/text/whole_file.h"
 #include "hal/sensors/faults.h"
 #include "lab/judge/scenario_run.h"
+#include "lab/scenario/edits.h"
 #include "lab/scenario/loader.h"
 
 namespace footfall::apps {
@@ -55,6 +56,11 @@ CheckedScenario load_checked(const RunOptions& options) {
   behaviors::check_physics(*scenario.behavior, physics, physics_world(world));
   print_diagnostics(physics);
   if (physics.has_errors()) throw InputError("");
+  core::Diagnostics edits;
+  for (int k = 0; k < diagnostics.file_count(); ++k) edits.add_file(diagnostics.file(k));
+  lab::check_edits(scenario, physics_world(world), edits);
+  print_diagnostics(edits);
+  if (edits.has_errors()) throw InputError("");
   return {std::move(scenario), std::move(world)};
 }
 
@@ -118,7 +124,7 @@ int run_scenario_file(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(behavior, sensors),
                          drawn.values};
-  const auto link = attach_link(options, loop, spec);
+  const auto link = attach_link(options, loop, world, spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();

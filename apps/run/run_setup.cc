@@ -163,11 +163,13 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 }
 
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
+                                             const sim::WorldDescription& world,
                                              lab::RunSpec& spec) {
-  auto link = make_link(options.live, loop);
+  auto link = make_link(options.live, loop, physics_world(world));
   spec.live = link.get();
   if (link && !options.quiet) {
-    fmt::print(options.json ? stderr : stdout, "live at {}: footfall tune\n", options.live.url);
+    fmt::print(options.json ? stderr : stdout, "live at {}: footfall tune{}\n", options.live.url,
+               tune_options_text(options.live));
     std::fflush(options.json ? stderr : stdout);
   }
   return link;

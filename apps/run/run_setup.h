@@ -45,6 +45,7 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 // Connects a run to the network of live tuning if its options say so, and prints the address; null
 // if not. The result must outlive the run. Throws like make_link().
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
+                                             const sim::WorldDescription& world,
                                              lab::RunSpec& spec);
 // Setup data recorded in the log.
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);

@@ -33,12 +33,20 @@ std::vector<std::string> search_path() {
       begin = end + 1;
     }
   }
+  std::vector<std::string> installed = installed_folders();
+  folders.insert(folders.end(), installed.begin(), installed.end() - 1);
+  folders.emplace_back(FOOTFALL_SOURCE_DIR);
+  folders.push_back(installed.back());
+  return folders;
+}
+
+std::vector<std::string> installed_folders() {
+  std::vector<std::string> folders;
   // An installed program finds its data relative to itself, so that the installation can be moved.
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error)
     folders.push_back((program.parent_path() / "../share/footfall").lexically_normal().string());
-  folders.emplace_back(FOOTFALL_SOURCE_DIR);
   folders.emplace_back(FOOTFALL_DATA_DIR);
   return folders;
 }

@@ -70,6 +70,9 @@ void add_tune_command(CLI::App& app, int& exit_code);
 // FOOTFALL_PATH (separated by colons), the source tree, the installed data.
 std::vector<std::string> search_path();
 
+// Those of them that belong to an installation: no command writes there.
+std::vector<std::string> installed_folders();
+
 // NAME itself if it is a file, else behaviors/library/NAME.yaml in the search path; NAME if not
 // found.
 std::string find_behavior_file(const std::string& name);

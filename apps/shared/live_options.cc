@@ -1,6 +1,7 @@
 // Creates a link from options; see live_options.h.
 #include "apps/shared/live_options.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 
 #include "apps/shared/commands.h"
 #include "core/units/units.h"
+#include "engine/lcm/client.h"
 #include "engine/lcm/link.h"
 
 namespace footfall::apps {
@@ -83,11 +85,42 @@ void join_live_url(int& argc, char** argv) {
   }
 }
 
-std::unique_ptr<engine::LcmLink> make_link(const LiveOptions& options, engine::ControlLoop& loop) {
+namespace {
+
+// Warns of engines that use the same channels already.
+void warn_of_others(const LiveOptions& options, const engine::LinkSettings& settings) {
+  constexpr double kLook = 0.35;  // s
+  engine::LiveClientSettings look{settings.url, settings.prefix, settings.key, "", 0.1, 0};
+  engine::LiveClient client(look);
+  for (const engine::EngineIdentity& other : client.look(kLook)) {
+    std::fprintf(stderr,
+                 "footfall: warning: another engine is at %s (%s_*) already: %s; `footfall tune` "
+                 "will ask for --session, or choose another --lcm-prefix\n",
+                 options.url.c_str(), options.prefix.c_str(), engine_text(other).c_str());
+  }
+  if (client.other_version()) {
+    std::fprintf(stderr,
+                 "footfall: warning: an engine of another version is at %s (%s_*) already\n",
+                 options.url.c_str(), options.prefix.c_str());
+  }
+}
+
+}  // namespace
+
+std::string engine_text(const engine::EngineIdentity& engine) {
+  return fmt::format("{}, pid {} on {}, since {:%H:%M:%S}, session {}{}", engine.behavior,
+                     engine.pid, engine.host, fmt::localtime(engine.start / 1'000'000),
+                     engine::session_number(engine.session),
+                     engine.usable ? "" : " (of another key)");
+}
+
+std::unique_ptr<engine::LcmLink> make_link(const LiveOptions& options, engine::ControlLoop& loop,
+                                           const behaviors::PhysicsWorld& world) {
   if (options.url.empty()) return nullptr;
   engine::LinkSettings settings;
   settings.url = options.url;
   settings.prefix = options.prefix;
+  settings.world = world;
   settings.telemetry = rate_of(options.telemetry);
   if (!options.open) {
     settings.key = options.key.empty() ? engine::default_key() : engine::read_key(options.key);
@@ -97,10 +130,20 @@ std::unique_ptr<engine::LcmLink> make_link(const LiveOptions& options, engine::C
                  options.url.c_str());
   }
   try {
+    warn_of_others(options, settings);
     return std::make_unique<engine::LcmLink>(loop, settings);
   } catch (const std::invalid_argument& error) {
     throw InputError(std::string("--lcm: error: ") + error.what());
   }
+}
+
+std::string tune_options_text(const LiveOptions& options) {
+  std::string text;
+  if (options.url != engine::kLiveUrl) text += fmt::format(" --url '{}'", options.url);
+  if (options.prefix != engine::kLivePrefix) text += " --prefix " + options.prefix;
+  if (!options.key.empty()) text += " --key " + options.key;
+  if (options.open) text += " --open";
+  return text;
 }
 
 std::string live_text(const LiveOptions& options, const engine::LcmLink& link) {

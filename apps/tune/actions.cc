@@ -48,7 +48,7 @@ bool find_named(const TuneModel& model, const std::vector<std::string>& names,
 }  // namespace
 
 int tune_list(const TuneOptions& options) {
-  const auto session = open_session(options);
+  const auto session = open_session(options, options.only_names);
   if (session == nullptr) return kMachineFailed;
   const TuneModel& model = session->model;
   std::vector<int> shown;
@@ -118,7 +118,9 @@ int tune_undo(const TuneOptions& options, bool redo) {
   const auto session = open_session(options);
   if (session == nullptr) return kMachineFailed;
   for (int k = 0; k < options.count; ++k) {
-    const int code = send_and_explain(*session, undo_request(redo), options);
+    footfall_lcm::request_t request = undo_request(redo);
+    request.over = options.over;
+    const int code = send_and_explain(*session, request, options);
     if (code != kGood) return code;
   }
   return kGood;

@@ -8,6 +8,7 @@
 #include "apps/shared/commands.h"
 #include "apps/tune/model/options.h"
 #include "apps/tune/model/quantity.h"
+#include "apps/tune/session.h"
 
 namespace footfall::apps {
 namespace {
@@ -31,7 +32,15 @@ void add_time(CLI::App& command, const std::string& name, double& seconds,
 }
 
 int run_action(const TuneOptions& options, int (*action)(const TuneOptions&)) {
-  return guarded([&] { return action(options); }, kMachineFailed);
+  const auto work = [&] {
+    try {
+      return action(options);
+    } catch (const SeveralEngines& several) {
+      fmt::print(stderr, "{}", several.what());
+      return kRobotFailed;
+    }
+  };
+  return guarded(work, kMachineFailed);
 }
 
 CLI::App* add_action(CLI::App& tune, const Options& options, int& exit_code,
@@ -72,6 +81,7 @@ void add_edits(CLI::App& tune, const Options& o, int& exit_code) {
         redo ? +[](const TuneOptions& options) { return tune_undo(options, true); }
              : +[](const TuneOptions& options) { return tune_undo(options, false); });
     command->add_option("N", o->count, "Number of changes")->check(CLI::Range(1, 1000));
+    add_time(*command, "--over", o->over, "Duration of the ramp (default: that of the change)");
     command->add_flag("--json", o->json, "Each answer as a JSON object");
   }
   CLI::App* raise =
@@ -81,6 +91,11 @@ void add_edits(CLI::App& tune, const Options& o, int& exit_code) {
 }
 
 void add_views(CLI::App& tune, const Options& o, int& exit_code) {
+  CLI::App* engines =
+      add_action(tune, o, exit_code, "list-engines",
+                 "The engines on the network, with their sessions", tune_list_engines);
+  engines->alias("who");
+  engines->add_flag("--json", o->json, "One JSON object");
   CLI::App* list = add_action(tune, o, exit_code, "list",
                               "Live parameters and gains with values, ranges, meaning", tune_list);
   list->add_option("GLOB", o->names, "Only these, with * and ?, or a part of the name");
@@ -108,9 +123,12 @@ void add_files(CLI::App& tune, const Options& o, int& exit_code) {
   CLI::App* save = add_action(tune, o, exit_code, "save",
                               "Saves the current values to the behavior's file", tune_save);
   save->add_option("NAME", o->names, "Only these; names or patterns");
-  save->add_option(
+  CLI::Option* const to = save->add_option(
       "--to", o->file,
       "Writes to this file: a new overlay, which begins with `base:`, or an existing one");
+  save->add_flag("--into-base", o->into_base,
+                 "Writes each value where it is defined, also into a base of the file that runs")
+      ->excludes(to);
   save->add_flag("--yes", o->yes, "Writes without asking");
   save->add_flag("--dry-run", o->dry_run, "Shows what would change, writes nothing");
   save->footer("Example: footfall tune save --to mine.yaml");
@@ -132,13 +150,18 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   tune->add_flag("--open", o->open, "Without a key, for `run --lcm-open`");
   tune->add_option("--prefix", o->prefix, "Prefix of the channel names, as `run --lcm-prefix`")
       ->capture_default_str();
+  tune->add_option("--session", o->session,
+                   "The engine to talk to, by its session (see list-engines); needed if there are "
+                   "several")
+      ->check(CLI::PositiveNumber);
   tune->add_option("--who", o->who, "Your name for other users and the log (default: user@host)");
   add_time(*tune, "--timeout", o->timeout, "How long to wait for an answer (default 3 s)");
   add_views(*tune, o, exit_code);
   add_edits(*tune, o, exit_code);
   add_files(*tune, o, exit_code);
   tune->footer(
-      "Exit codes: 0 done, 1 refused, 2 the input is wrong, 3 no engine answers.\n"
+      "Exit codes: 0 done, 1 refused or several engines, 2 the input is wrong, 3 no engine "
+      "answers.\n"
       "Example: footfall tune set lift_time=150ms");
   tune->callback([tune, o, &exit_code] {
     if (tune->get_subcommands().empty()) exit_code = run_action(*o, tune_screen);

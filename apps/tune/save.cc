@@ -30,7 +30,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
-                        const std::string& overlay) {
+                        const std::string& overlay, bool into_base) {
   TuneSave save;
   const std::string& path = model.catalogue.path;
   std::error_code ignored;
@@ -39,11 +39,13 @@ TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
         "{}: no such file here: save on the host that the engine runs on, or mount it", path));
     return save;
   }
+  // An overlay may differ from the file that runs in any value.
+  const bool exists = !overlay.empty() && fs::is_regular_file(overlay, ignored);
   std::vector<behaviors::NamedValue> values;
   for (const int index : parameters) {
     const TuneParameter& parameter = model.parameters[at(index)];
     const auto target = target_of(model, parameter);
-    if (differs_from_file(model, parameter)) {
+    if (exists || differs_from_file(model, parameter)) {
       values.push_back({parameter.name, {target.begin(), target.end()}});
     }
   }
@@ -51,7 +53,8 @@ TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
   options.search = search_path();
-  save.plan = behaviors::plan_save(path, options, values, overlay, diagnostics);
+  save.plan = behaviors::plan_save(path, options, values, {overlay, into_base, installed_folders()},
+                                   diagnostics);
   save.problems = save.plan.refusals;
   if (diagnostics.has_errors()) {
     for (const std::string& line : lines_of(diagnostics.to_string())) save.problems.push_back(line);
@@ -85,10 +88,11 @@ int tune_save(const TuneOptions& options) {
     }
   }
   read_file_values(model);
-  const TuneSave save = plan_tune_save(model, parameters, options.file);
+  const TuneSave save = plan_tune_save(model, parameters, options.file, options.into_base);
   for (const std::string& problem : save.problems) fmt::print(stderr, "error: {}\n", problem);
   if (!save.problems.empty()) return kBadInput;
-  return show_and_write(save.plan, model.catalogue.path, options.dry_run, options.yes);
+  const std::string& name = options.file.empty() ? model.catalogue.path : options.file;
+  return show_and_write(save.plan, name, options.dry_run, options.yes);
 }
 
 }  // namespace footfall::apps

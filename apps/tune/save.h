@@ -17,10 +17,11 @@ struct TuneSave {
 };
 
 // `parameters`: indices into model.parameters; those with the file's value change nothing.
-// `overlay` (if not empty): write to that file instead of the files that define the values. Reads
+// `overlay` (if not empty): write to that file instead of the one that runs; if it exists, values
+// are compared with what it results in. `into_base`: write each value where it is defined. Reads
 // the behavior's file, which must be on this host.
 TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
-                        const std::string& overlay);
+                        const std::string& overlay, bool into_base = false);
 // Writes the changes and returns the written files, one a line; `problems` on failure.
 std::vector<std::string> write_tune_save(const TuneSave& save, std::vector<std::string>& problems);
 

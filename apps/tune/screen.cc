@@ -179,7 +179,7 @@ int tune_screen(const TuneOptions& options) {
         "(see "
         "footfall tune --help)\n");
   }
-  const auto session = open_session(options);
+  const auto session = open_session(options, true);
   if (session == nullptr) return kMachineFailed;
   Screen screen{*session, {}, {}, {}};
   begin_run(screen);

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
+#include "apps/shared/live_options.h"
 #include "apps/tune/view/tables.h"
 #include "core/index.h"
 #include "core/text/json_text.h"
@@ -24,6 +26,7 @@ engine::LiveClientSettings settings_of(const TuneOptions& options) {
   settings.url = options.url;
   settings.prefix = options.prefix;
   settings.who = options.who;
+  settings.session = options.session;
   if (options.open) return settings;
   try {
     settings.key = options.key.empty() ? engine::default_key() : engine::read_key(options.key);
@@ -40,19 +43,76 @@ void take_snapshot(TuneSession& session) {
 
 }  // namespace
 
-std::unique_ptr<TuneSession> open_session(const TuneOptions& options) {
-  std::unique_ptr<TuneSession> session;
+namespace {
+
+std::unique_ptr<TuneSession> make_session(const TuneOptions& options) {
   try {
-    session = std::make_unique<TuneSession>(settings_of(options));
+    return std::make_unique<TuneSession>(settings_of(options));
   } catch (const std::invalid_argument& error) {
     throw input_error(error.what());
   }
+}
+
+std::string several_text(const std::vector<engine::EngineIdentity>& engines) {
+  std::string text =
+      fmt::format("error: {} engines are here: choose one with --session N\n", engines.size());
+  for (const engine::EngineIdentity& engine : engines) {
+    text += fmt::format("  --session {}: {}\n", engine::session_number(engine.session),
+                        engine_text(engine));
+  }
+  return text;
+}
+
+nlohmann::ordered_json engine_json(const engine::EngineIdentity& engine) {
+  return {{"session", engine::session_number(engine.session)},
+          {"behavior", engine.behavior},
+          {"robot", engine.robot},
+          {"host", engine.host},
+          {"pid", engine.pid},
+          {"start", static_cast<double>(engine.start) * 1e-6},
+          {"usable", engine.usable}};
+}
+
+}  // namespace
+
+std::unique_ptr<TuneSession> open_session(const TuneOptions& options, bool silent) {
+  std::unique_ptr<TuneSession> session = make_session(options);
   if (!session->client.connect(options.timeout)) {
     fmt::print(stderr, "error: {}\n", session->client.why_not());
     return nullptr;
   }
+  const auto engines = session->client.engines();
+  if (options.session == 0 && engines.size() > 1) throw SeveralEngines(several_text(engines));
   take_snapshot(*session);
+  if (!silent) tell_session(session->model.catalogue);
   return session;
+}
+
+void tell_session(const footfall_lcm::catalogue_t& catalogue) {
+  fmt::print(stderr, "session {}: {}, pid {} on {}\n", engine::session_number(catalogue.session),
+             core::on_one_line(catalogue.behavior), catalogue.pid,
+             core::on_one_line(catalogue.host));
+}
+
+int tune_list_engines(const TuneOptions& options) {
+  constexpr double kLook = 0.5;  // s
+  const std::unique_ptr<TuneSession> session = make_session(options);
+  const auto engines = session->client.look(std::min(kLook, options.timeout));
+  nlohmann::ordered_json json = {{"engines", nlohmann::ordered_json::array()}};
+  for (const engine::EngineIdentity& engine : engines)
+    json["engines"].push_back(engine_json(engine));
+  if (options.json) {
+    fmt::print("{}\n", core::json_text(json));
+  } else {
+    for (const auto& engine : engines) fmt::print("{}\n", engine_text(engine));
+  }
+  const bool other = session->client.other_version();
+  if (engines.empty() || other) {
+    fmt::print(
+        stderr, "{}: {}\n", engines.empty() ? "error" : "note",
+        engines.empty() ? session->client.why_not() : "an engine of another version is here, too");
+  }
+  return engines.empty() ? kMachineFailed : kGood;
 }
 
 std::vector<footfall_lcm::answer_t> take_messages(TuneSession& session, double seconds) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,11 @@
 
 namespace footfall::apps {
 
+// Several engines are at the address, and none was chosen; the text lists them.
+struct SeveralEngines : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 struct TuneSession {
   explicit TuneSession(const engine::LiveClientSettings& settings) : client(settings) {}
 
@@ -19,8 +25,11 @@ struct TuneSession {
 };
 
 // Connects and waits for catalogue and values; nullptr if no engine answers, with advice on stderr.
-// Throws InputError for an invalid URL, prefix or key.
-std::unique_ptr<TuneSession> open_session(const TuneOptions& options);
+// Throws InputError for an invalid URL, prefix or key, SeveralEngines if --session is needed. Names
+// the session on stderr unless `silent`.
+std::unique_ptr<TuneSession> open_session(const TuneOptions& options, bool silent = false);
+// Names the engine on stderr: `session 123456: balance_best, pid 4711 on bench`.
+void tell_session(const footfall_lcm::catalogue_t& catalogue);
 // Waits at most `seconds` for messages and applies them; returns the answers.
 std::vector<footfall_lcm::answer_t> take_messages(TuneSession& session, double seconds);
 // Sends a request and waits until the timeout. Prints the result (reasons on stderr); returns the

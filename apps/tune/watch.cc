@@ -89,6 +89,7 @@ int tune_watch(const TuneOptions& options) {
     if (!print_samples(*session, watch)) return kGood;
     const auto& told = session->model.catalogue;
     const bool other = told.session != watch.session || told.generation != watch.generation;
+    if (other) tell_session(told);
     if (other && !begin_columns(session->model, options, watch)) return kBadInput;
     if (session->client.silence() > options.timeout) {
       fmt::print(stderr, "error: {}\n", session->client.why_not());

@@ -2,6 +2,7 @@
 #include "behaviors/compiled/behavior.h"
 
 #include <algorithm>
+#include <charconv>
 
 namespace footfall::behaviors {
 
@@ -33,12 +34,21 @@ int Behavior::parameter_of_slot(int slot) const {
 
 ParameterPart Behavior::find_parameter_part(std::string_view text) const {
   const int whole = find_parameter(text);
-  const std::size_t dot = text.rfind('.');
-  if (whole >= 0 || dot == std::string_view::npos) return {whole, -1};
-  const int parameter = find_parameter(text.substr(0, dot));
+  const bool numbered = text.ends_with(']');
+  const std::size_t end = text.rfind(numbered ? '[' : '.');
+  if (whole >= 0 || end == std::string_view::npos) return {whole, -1};
+  const int parameter = find_parameter(text.substr(0, end));
   if (parameter < 0) return {};
-  const int size = parameters[static_cast<std::size_t>(parameter)].size;
-  const int component = component_of(text.substr(dot + 1), size);
+  const ParameterInfo& info = parameters[static_cast<std::size_t>(parameter)];
+  const std::string_view name = text.substr(end + 1);
+  int component = -1;
+  if (numbered) {
+    const char* const last = name.data() + name.size() - 1;
+    const auto [stop, error] = std::from_chars(name.data(), last, component);
+    if (error != std::errc() || stop != last || component >= info.size) component = -1;
+  } else {
+    component = component_of(name, info);
+  }
   return component < 0 ? ParameterPart{} : ParameterPart{parameter, component};
 }
 

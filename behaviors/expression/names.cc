@@ -154,7 +154,7 @@ Operand ExpressionParser::parse_parameter(const Token& token) {
     if (parameter.name != token.text) {
       names.push_back(parameter.name);
       if (dot == std::string::npos || parameter.name != token.text.substr(0, dot)) continue;
-      component = component_of(token.text.substr(dot + 1), parameter.size);
+      component = component_of(token.text.substr(dot + 1), parameter);
       if (component < 0) {
         fail(token, "unknown-parameter",
              fmt::format("parameter '{}' has no component '{}'", parameter.name,

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/diagnostics/diagnostics.h"
 #include "core/units/units.h"
 
 namespace footfall::behaviors {
@@ -18,9 +19,11 @@ struct ParameterInfo {
   double min = 0.0, max = 0.0;  // equal: unlimited
   bool live = false;
   std::string doc;
-  bool bare = false;      // written without unit: adopts the required dimension
-  bool variable = false;  // set by an action: reset at the start of every run, never live
-  bool gain = false;      // entry of a gain table
+  bool bare = false;                // written without unit: adopts the required dimension
+  bool variable = false;            // set by an action: reset at the start of every run, never live
+  bool gain = false;                // entry of a gain table
+  std::vector<std::string> axes{};  // of a gain: names of the values
+  core::Mark mark{};                // of its name, or of its value in a gain table
 
   bool has_range() const { return min < max; }
 };
@@ -29,6 +32,23 @@ struct ParameterInfo {
 inline int component_of(std::string_view name, int size) {
   const int index = name.size() == 1 ? name[0] - 'x' : -1;
   return index >= 0 && index < size && index < 3 ? index : -1;
+}
+
+// Component of a value's last name, `pitch` or `x`: a gain's values have the names of its task's
+// axes; -1 if invalid.
+inline int component_of(std::string_view name, const ParameterInfo& info) {
+  for (std::size_t k = 0; k < info.axes.size(); ++k) {
+    if (info.axes[k] == name) return static_cast<int>(k);
+  }
+  return info.axes.empty() ? component_of(name, info.size) : -1;
+}
+// The name of one value: `lift_time`, `goal.x`, `gains.single.attitude.kp.pitch`.
+inline std::string value_name(const ParameterInfo& info, int component) {
+  const auto k = static_cast<std::size_t>(component);
+  if (info.size == 1) return info.name;
+  if (k < info.axes.size()) return info.name + "." + info.axes[k];
+  if (info.size <= 3) return info.name + "." + "xyz"[k];
+  return info.name + "[" + std::to_string(component) + "]";
 }
 
 // A parameter, or one of its components.

@@ -85,6 +85,7 @@ struct LoadContext {
   std::vector<const core::YamlNode*> transition_nodes;  // by transition, nullptr: a state's own
   std::vector<std::vector<int>> control_states;  // by control: the states that it is merged from
   std::vector<std::string> script_functions;     // functions available to `call:`
+  std::map<int, core::Mark> set_marks;           // by action: the value of a `set`
   bool scripts_failed = false;                   // told; more functions may be missing for it
   std::vector<std::string> script_patterns;      // patterns of footfall.on
   std::vector<std::pair<std::string, core::Mark>> marks;  // of `mark: NAME`

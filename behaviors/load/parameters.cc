@@ -97,6 +97,7 @@ void load_parameter(LoadContext& context, const core::YamlEntry& entry) {
       is_map ? core::require_key(map, "value", context.diagnostics) : &entry.value;
   ParameterInfo info;
   info.name = entry.key;
+  info.mark = entry.key_mark;
   info.slot = static_cast<int>(context.behavior.values.size());
   std::vector<double> values;
   const bool good = value != nullptr && read_values(context, *value, info, values);

@@ -50,7 +50,10 @@ struct SavePlanner {
   const SaveSource& source;
   const core::Diagnostics& files;  // names of the source's files
   SavePlan& plan;
-  std::string overlay{};  // identity of the only file that may change; empty: any
+  std::string only{};  // identity of the only file that may change; empty: any
+  // Identities: a library's file may change only if it is `named`, one in `installed` never.
+  std::string named{};
+  std::vector<std::string> libraries{}, installed{};
   std::vector<Wanted> wanted{};
   std::vector<KeyPath> allowed{};  // paths that may differ in the tree
   // A changed file.
@@ -78,6 +81,8 @@ void place_edits(SavePlanner& planner, const Wanted& wanted);
 // The file to be changed, read on first use; nullptr and a refusal if it cannot be changed.
 SavePlanner::File* open_file(SavePlanner& planner, const std::string& path, core::Mark mark,
                              const std::string& name);
+// Reason why a file must not be written; empty if it may.
+std::string reason_against_file(const SavePlanner& planner, const std::string& path);
 // Creates a file's changed text; false and a refusal if impossible.
 bool finish_file(SavePlanner& planner, SavePlanner::File& file);
 // Canonical path: equal for two names of the same file.

@@ -22,8 +22,8 @@ std::optional<std::string> read_file(const std::string& path) {
 }
 
 bool may_change(const SavePlanner& planner, core::Mark mark) {
-  return planner.overlay.empty() ||
-         (mark.file >= 0 && identity(planner.path_of(mark)) == planner.overlay);
+  return planner.only.empty() ||
+         (mark.file >= 0 && identity(planner.path_of(mark)) == planner.only);
 }
 
 void change_scalar(SavePlanner& planner, const Wanted& wanted, const NodeEdit& edit) {
@@ -83,11 +83,33 @@ std::string identity(const std::string& path) {
   return error ? path : real.string();
 }
 
+std::string reason_against_file(const SavePlanner& planner, const std::string& path) {
+  const fs::path file = identity(path);
+  const auto holds = [&](const std::string& folder) {
+    const fs::path inner = file.lexically_relative(identity(folder));
+    return !inner.empty() && *inner.begin() != "..";
+  };
+  if (std::ranges::any_of(planner.installed, holds)) {
+    return fmt::format("{} is an installed file, which is never written: --to FILE", path);
+  }
+  if (file != planner.named && std::ranges::any_of(planner.libraries, holds)) {
+    return fmt::format(
+        "{} belongs to a library, which other behaviors share: it is written only if it is named "
+        "itself (footfall set {})",
+        path, file.stem().string());
+  }
+  return "";
+}
+
 SavePlanner::File* open_file(SavePlanner& planner, const std::string& path, core::Mark mark,
                              const std::string& name) {
   SavePlanner::File& file = planner.changes[identity(path)];
   if (!file.change.path.empty()) return &file;
   file.change.path = path;
+  if (const std::string reason = reason_against_file(planner, path); !reason.empty()) {
+    planner.refuse(mark, name, reason);
+    return nullptr;
+  }
   auto text = read_file(path);
   if (!text) {
     planner.refuse(mark, name, fmt::format("{} cannot be read", path));
@@ -128,7 +150,7 @@ void place_edits(SavePlanner& planner, const Wanted& wanted) {
         }
         if (!edit.key.empty()) keys.push_back(edit.key);
       }
-      add_entry(planner, wanted, planner.overlay, mark, keys,
+      add_entry(planner, wanted, planner.only, mark, keys,
                 of_map ? edit.text : whole_text(planner.source, wanted));
       if (!of_map) return;
       continue;

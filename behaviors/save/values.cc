@@ -17,6 +17,7 @@
 #include "behaviors/save/parts.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/same_bits.h"
+#include "core/text/search_folders.h"
 #include "core/yaml_text/write.h"
 
 namespace footfall::behaviors {
@@ -147,7 +148,7 @@ void note_bases(SavePlanner& planner, const std::string& path) {
   }
 }
 
-void make_plan(SavePlanner& planner, const std::string& path, const std::string& overlay) {
+void make_plan(SavePlanner& planner, const std::string& path) {
   const auto place_of = [](const SavedPlace& place) {
     return std::tie(place.file, place.line, place.column);
   };
@@ -162,22 +163,37 @@ void make_plan(SavePlanner& planner, const std::string& path, const std::string&
   }
   if (planner.plan.refused() || planner.plan.files.empty()) return;
   planner.plan.refusals =
-      reasons_against_result(planner.source, overlay.empty() ? path : overlay, planner.plan.files,
-                             planner.wanted, planner.allowed, planner.plan.notes);
-  note_bases(planner, overlay.empty() ? path : overlay);
+      reasons_against_result(planner.source, path, planner.plan.files, planner.wanted,
+                             planner.allowed, planner.plan.notes);
+  note_bases(planner, path);
+}
+
+// Opens the file that gets all values; false and a refusal if it cannot be written.
+bool open_target(SavePlanner& planner, const std::string& file, const std::string& path,
+                 bool is_new) {
+  planner.only = identity(file);
+  if (!is_new) return open_file(planner, file, {}, file) != nullptr;
+  if (const std::string reason = reason_against_file(planner, file); !reason.empty()) {
+    planner.plan.refusals.push_back(reason);
+    return false;
+  }
+  const std::string head =
+      fmt::format("behavior: 1\nbase: {}\n", base_text(file, path, planner.source.context.options));
+  planner.changes[planner.only].change = {file, "", head, true};
+  return true;
 }
 
 }  // namespace
 
 SavePlan plan_save(const std::string& path, const LoadOptions& options,
-                   const std::vector<NamedValue>& values, const std::string& overlay,
+                   const std::vector<NamedValue>& values, const SaveTarget& target,
                    core::Diagnostics& diagnostics) {
   SavePlan plan;
   LoadOptions own = options;
   own.set.clear();
   std::error_code error;
-  const bool new_overlay = !overlay.empty() && !fs::exists(fs::symlink_status(overlay, error));
-  const std::string from = overlay.empty() || new_overlay ? path : overlay;
+  const bool is_new = !target.file.empty() && !fs::exists(fs::symlink_status(target.file, error));
+  const std::string from = target.file.empty() || is_new ? path : target.file;
   core::Diagnostics problems;
   SaveSource source(own, problems);
   if (!load_source(source, from, problems)) {
@@ -185,23 +201,19 @@ SavePlan plan_save(const std::string& path, const LoadOptions& options,
     plan.refusals.push_back(from + ": it does not load");
     return plan;
   }
-  if (!overlay.empty() && !new_overlay && !was_read(problems, path)) {
+  if (!was_read(problems, path)) {
     plan.refusals.push_back(
-        fmt::format("{}: it is there already and {} is not among its bases", overlay, path));
+        fmt::format("{}: it is there already and {} is not among its bases", from, path));
     return plan;
   }
   SavePlanner planner{source, problems, plan};
-  if (!overlay.empty()) planner.overlay = identity(overlay);
+  const std::string& file = is_new ? target.file : from;
+  planner.named = identity(file);
+  planner.libraries = library_folders(core::search_from(path, options.search));
+  planner.installed = target.installed;
   collect_wanted(planner, values);
   if (plan.refused() || planner.wanted.empty()) return plan;
-  if (new_overlay) {
-    const std::string head =
-        fmt::format("behavior: 1\nbase: {}\n", base_text(overlay, path, options));
-    planner.changes[planner.overlay].change = {overlay, "", head, true};
-  } else if (!overlay.empty()) {
-    open_file(planner, overlay, {}, overlay);
-  }
-  make_plan(planner, path, overlay);
+  if (target.into_bases || open_target(planner, file, path, is_new)) make_plan(planner, file);
   if (plan.refused()) plan.files.clear();
   return plan;
 }

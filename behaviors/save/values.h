@@ -29,10 +29,19 @@ struct SavePlan {
   bool refused() const { return !refusals.empty(); }
 };
 
-// Plans to write `values` to the behavior file at `path`, each where it is defined: in that file or
-// in one of its bases. With `overlay` (if not empty) all go to that file instead: a new one gets
-// `base: PATH` and only the differences; an existing one must be the behavior or have it among its
-// bases, and is edited in place. Values equal to the file's change nothing.
+// The files that may get values.
+struct SaveTarget {
+  // Gets all values; empty: the behavior's own file. A new one gets `base: PATH` and only the
+  // differences; an existing one must be the behavior or have it among its bases.
+  std::string file;
+  // Each value goes where it is defined, possibly a base, unless that is a file of a library.
+  bool into_bases = false;
+  std::vector<std::string> installed;  // folders whose files are never written
+};
+
+// Plans to write `values` to the behavior file at `path`, or to target.file: edited in place if it
+// has the value, else as an override of its base's. Values equal to those that this file results in
+// change nothing.
 //
 // options.set is not applied: values of `--set` are not defined in a file and are written only if
 // they are among `values`. Refused, with the reason: unknown names, variables, values that are out
@@ -41,7 +50,7 @@ struct SavePlan {
 // other value of the file (or overlay) unchanged. Problems of the files are added to `diagnostics`;
 // the plan is then refused, too.
 SavePlan plan_save(const std::string& path, const LoadOptions& options,
-                   const std::vector<NamedValue>& values, const std::string& overlay,
+                   const std::vector<NamedValue>& values, const SaveTarget& target,
                    core::Diagnostics& diagnostics);
 
 // The plan in the format of `diff -u`, file by file.

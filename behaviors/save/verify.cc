@@ -9,6 +9,7 @@
 #include "behaviors/loader.h"
 #include "behaviors/save/parts.h"
 #include "core/same_bits.h"
+#include "core/text/search_folders.h"
 #include "core/yaml_text/edit.h"
 
 namespace footfall::behaviors {
@@ -100,7 +101,8 @@ std::vector<std::string> reasons_against_result(const SaveSource& old, const std
   core::Diagnostics diagnostics;
   SaveSource now(old.context.options, diagnostics);
   core::YamlNode root = core::load_changed_yaml_with_base(
-      path, changes, diagnostics, library_folders(old.context.options.search));
+      path, changes, diagnostics,
+      library_folders(core::search_from(path, old.context.options.search)));
   if (!compile_behavior(now.context, std::move(root), path)) {
     return {"with these values it does not load: " + first_error(diagnostics)};
   }

@@ -219,6 +219,9 @@ void add_values(const behaviors::Behavior& behavior, behaviors::ParameterPart pa
                 std::span<const double> values, std::vector<behaviors::SlotValue>& to,
                 std::vector<std::string>& reasons);
 
+// Completes 'it is not live, because ...'.
+std::string reason_not_live(const behaviors::ParameterInfo& info);
+
 // All reasons against a batch, naming parameter, value, unit and range; `revision`: the current
 // one.
 std::vector<std::string> reasons_against(const behaviors::Behavior& behavior,

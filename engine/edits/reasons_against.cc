@@ -27,7 +27,7 @@ std::string with_unit(double value, const ParameterInfo& info) {
 // One value of a parameter: finite, within its range; a gain without range must not be negative.
 void check_value(const ParameterInfo& info, int component, double value,
                  std::vector<std::string>& reasons) {
-  const std::string name = info.size == 1 ? info.name : fmt::format("{}[{}]", info.name, component);
+  const std::string name = value_name(info, component);
   if (!std::isfinite(value)) {
     reasons.push_back(fmt::format("{}: {:g} is not a finite number", name, value));
   } else if (info.has_range() && (value < info.min || value > info.max)) {
@@ -43,8 +43,7 @@ void check_value(const ParameterInfo& info, int component, double value,
 void check_liveness(const ParameterInfo& info, EditSource source,
                     std::vector<std::string>& reasons) {
   if (info.live || may_write_all(source)) return;
-  reasons.push_back(info.variable ? info.name + ": not live, the behavior's actions set it"
-                                  : info.name + ": not live; give it a range and 'live: true'");
+  reasons.push_back(info.name + ": not live, because " + reason_not_live(info));
 }
 
 // Checks the values of a batch, slot by slot; a reason that concerns a whole parameter is given
@@ -88,6 +87,13 @@ void check_events(const Behavior& behavior, const EditBatch& batch,
 }
 
 }  // namespace
+
+std::string reason_not_live(const ParameterInfo& info) {
+  if (info.variable) return "the behavior's actions set it";
+  if (info.gain) return "its table has no range for it: give one under 'gains.ranges'";
+  return info.has_range() ? "the file does not say so: give it 'live: true'"
+                          : "the file does not say so: give it a range and 'live: true'";
+}
 
 void add_values(const Behavior& behavior, behaviors::ParameterPart part,
                 std::span<const double> values, std::vector<behaviors::SlotValue>& to,

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -19,7 +18,9 @@
 #include "core/process/machine_error.h"
 #include "core/text/printable.h"
 #include "engine/lcm/bus.h"
+#include "engine/lcm/known_engines.h"
 #include "engine/live/codec.h"
+#include "engine/live/host_name.h"
 
 namespace footfall::engine {
 namespace {
@@ -31,42 +32,16 @@ constexpr std::size_t kMost = 4096;          // limit of stored answers and of s
 constexpr std::size_t kLargest = 4'000'000;  // bytes, limit of a message
 constexpr double kHelloApart = 0.3;          // s between hello messages
 constexpr double kSilent = 1.5;              // s of silence after which another session is accepted
+constexpr double kLook = 0.35;               // s to wait for the catalogues of other engines
 
 double seconds_since(Clock::time_point then) {
   return std::chrono::duration<double>(Clock::now() - then).count();
 }
 
 std::string user_at_host() {
-  std::array<char, 64> host{};
-  ::gethostname(host.data(), host.size() - 1);
   const char* const user = std::getenv("USER");
   const std::string name = user != nullptr && *user != '\0' ? user : std::to_string(::getuid());
-  return core::on_one_line(name + "@" + host.data());
-}
-
-// Whether the indices and sizes in the catalogue are consistent: they are used as indices.
-bool fits(const catalogue_t& catalogue) {
-  return std::ranges::all_of(catalogue.parameters, [&](const parameter_t& p) {
-    return p.first >= 0 && p.size >= 1 && p.first <= catalogue.value_count - p.size;
-  });
-}
-
-bool fits(const values_t& values, const catalogue_t& catalogue) {
-  return values.count == catalogue.value_count;
-}
-
-bool fits(const telemetry_t& telemetry, const catalogue_t& catalogue) {
-  const auto below = [](std::int32_t index, std::int32_t count) {
-    return index >= 0 && index < count;
-  };
-  return telemetry.foot_count == catalogue.foot_count &&
-         telemetry.fault_count == catalogue.fault_count &&
-         telemetry.signal_count == catalogue.signal_count &&
-         std::ranges::all_of(telemetry.active,
-                             [&](auto state) { return below(state, catalogue.state_count); }) &&
-         std::ranges::all_of(telemetry.tasks, [&](const task_t& task) {
-           return below(task.name, catalogue.task_count);
-         });
+  return core::on_one_line(name + "@" + host_name());
 }
 
 int index_of(const std::vector<std::string>& names, std::string_view name) {
@@ -108,6 +83,8 @@ struct LiveClient::Impl {
       } else {
         ++rejected;
         if (problem == PacketProblem::not_authentic) look_at_stranger(packet);
+        other_version |=
+            problem == PacketProblem::wrong_type || problem == PacketProblem::other_protocol;
       }
     });
   }
@@ -117,21 +94,31 @@ struct LiveClient::Impl {
     catalogue_t other;
     if (decode(packet, nullptr, other) == PacketProblem::none) {
       stranger = other.keyed ? Stranger::other_key : Stranger::open;
+      known.note(other, false);
     }
   }
+
+  bool is_wanted(std::int64_t session) const {
+    return settings.session == 0 || settings.session == session ||
+           settings.session == session_number(session);
+  }
+  bool is_silent() const { return seconds_since(heard_at) >= kSilent; }
 
   // --- Receiving. ---
   void take_catalogue(const catalogue_t& message) {
     if (settings.key.has_value() != static_cast<bool>(message.keyed)) {
       stranger = message.keyed ? Stranger::wants_key : Stranger::open;
+      known.note(message, false);
       ++rejected;
       return;
     }
+    known.note(message, true);
+    if (!is_wanted(message.session)) return;
     const bool other = message.session != catalogue.session;
     // A second engine or an old packet must not replace the current engine.
     const bool late = !other && message.generation < catalogue.generation;
     if (message.session == 0 || !fits(message) || late ||
-        (other && connected() && seconds_since(heard_at) < kSilent)) {
+        (other && catalogue.session != 0 && !is_silent())) {
       ++rejected;
       return;
     }
@@ -167,7 +154,7 @@ struct LiveClient::Impl {
   void take_answer(const answer_t& message) {
     if (message.session != catalogue.session) {
       ++rejected;
-      hello_wanted = true;
+      known.note(message.session);
       return;
     }
     heard_at = Clock::now();
@@ -176,10 +163,10 @@ struct LiveClient::Impl {
       if (asked == message.sequence) answered = message;
     }
     const std::pair<std::int64_t, std::int64_t> name = {message.client, message.sequence};
-    if (!known.insert(name).second) return;
+    if (!seen.insert(name).second) return;
     known_order.push_back(name);
     if (known_order.size() > kMost) {
-      known.erase(known_order.front());
+      seen.erase(known_order.front());
       known_order.pop_front();
     }
     keep(answers, message);
@@ -191,9 +178,11 @@ struct LiveClient::Impl {
   bool of_now(const Message& message) {
     const bool now = catalogue.session != 0 && message.session == catalogue.session &&
                      message.generation == catalogue.generation;
+    const bool own = message.session == catalogue.session;
+    if (!own) known.note(message.session);
     if (now) {
       heard_at = Clock::now();
-    } else {
+    } else if (own || catalogue.session == 0 || is_silent()) {
       hello_wanted = true;
     }
     return now;
@@ -224,10 +213,14 @@ struct LiveClient::Impl {
 
   // --- Sending. ---
   void send_due() {
-    if ((hello_wanted || !connected()) && seconds_since(hello_at) >= kHelloApart) {
+    const bool lost = !unanswered.empty() && is_silent();
+    if ((hello_wanted || !connected() || lost) && seconds_since(hello_at) >= kHelloApart) {
       hello_wanted = false;
       hello_at = Clock::now();
-      bus.publish(channel("HELLO"), encode(hello_t{number}, nullptr));
+      hello_t hello{};
+      hello.client = number;
+      hello.session = connected() && !is_silent() && !looking ? catalogue.session : 0;
+      bus.publish(channel("HELLO"), encode(hello, nullptr));
     }
     for (auto& [sequence, sent] : unanswered) {
       if (seconds_since(sent.at) < settings.retry) continue;
@@ -264,11 +257,13 @@ struct LiveClient::Impl {
   std::map<std::int64_t, Sent> unanswered;  // requests by sequence
   std::vector<answer_t> answers;
   std::vector<telemetry_t> all_telemetry;
-  std::set<std::pair<std::int64_t, std::int64_t>> known;  // answers, by client and sequence
+  std::set<std::pair<std::int64_t, std::int64_t>> seen;  // answers, by client and sequence
   std::deque<std::pair<std::int64_t, std::int64_t>> known_order;
   std::int64_t asked = 0;  // sequence that ask() waits for
   std::optional<answer_t> answered;
   std::int64_t arrived = 0, rejected = 0;
+  KnownEngines known;
+  bool other_version = false, looking = false;
   Stranger stranger = Stranger::none;
   Clock::time_point heard_at{}, hello_at{};
 };
@@ -283,12 +278,44 @@ bool LiveClient::connect(double timeout) {
   while (!impl_->connected() && seconds_since(begin) < timeout) {
     impl_->poll(std::min(0.1, timeout));
   }
+  if (impl_->connected() && impl_->settings.session == 0) {
+    look(std::max(0.0, kLook - seconds_since(begin)));
+  }
   return impl_->connected();
 }
+
+std::vector<EngineIdentity> LiveClient::look(double seconds) {
+  const auto begin = Clock::now();
+  impl_->looking = impl_->hello_wanted = true;
+  // Who was heard, but has not said yet who it is, gets some more time.
+  const auto waits = [&](double passed) {
+    return passed < seconds || (!impl_->known.all_named() && passed < seconds + kSilent);
+  };
+  for (double passed = 0.0; waits(passed); passed = seconds_since(begin)) {
+    impl_->hello_wanted |= !impl_->known.all_named();
+    impl_->poll(std::max(0.01, std::min(seconds - passed, 0.1)));
+  }
+  impl_->looking = false;
+  return engines();
+}
+
+std::vector<EngineIdentity> LiveClient::engines() const { return impl_->known.list(); }
+
+bool LiveClient::other_version() const { return impl_->other_version; }
 
 bool LiveClient::connected() const { return impl_->connected(); }
 
 std::string LiveClient::why_not() const {
+  const LiveClientSettings& settings = impl_->settings;
+  if (settings.session != 0) {
+    const auto engines = impl_->known.list();
+    const bool there = std::ranges::any_of(
+        engines, [&](const auto& engine) { return impl_->is_wanted(engine.session); });
+    if (!there && !engines.empty()) {
+      return "no engine of session " + std::to_string(settings.session) + " answers on " +
+             Impl::url_of(settings) + ": `footfall tune list-engines` lists those that do";
+    }
+  }
   switch (impl_->stranger) {
     case Impl::Stranger::other_key:
       return "an engine answers, but its key is another one: give the same file to both "
@@ -300,6 +327,11 @@ std::string LiveClient::why_not() const {
       return "the engine that answers wants a key";
     case Impl::Stranger::none:
       break;
+  }
+  if (impl_->other_version) {
+    return "an engine of another version is on " + Impl::url_of(settings) + ", channels " +
+           settings.prefix + "_*, and is not understood (this is protocol " +
+           std::to_string(hello_t::PROTOCOL) + "): use the program of the run";
   }
   return "no engine answers on " + Impl::url_of(impl_->settings) + ", channels " +
          impl_->settings.prefix + "_*: `footfall run BEHAVIOR --lcm --realtime` starts one";

@@ -25,6 +25,18 @@ struct LiveClientSettings {
   std::optional<LiveKey> key;       // none: only engines that run with --lcm-open are accepted
   std::string who;                  // name shown to other users and in the log; empty: USER@HOST
   double retry = 0.1;               // s without an answer until a request is repeated
+  std::int64_t session = 0;  // the only engine to talk to, or its session_number(); 0: any one
+};
+
+// A session for people: six digits of it.
+constexpr std::int64_t session_number(std::int64_t session) { return 1 + session % 999'999; }
+
+// An engine on the network.
+struct EngineIdentity {
+  std::int64_t session = 0, pid = 0;
+  std::int64_t start = 0;  // us since 1970, UTC
+  std::string host, behavior, robot;
+  bool usable = true;  // false: it has another key
 };
 
 class LiveClient {
@@ -37,8 +49,15 @@ class LiveClient {
   LiveClient& operator=(const LiveClient&) = delete;
 
   // Waits at most `timeout` seconds for catalogue and values; false if they did not arrive,
-  // why_not() gives the reason.
+  // why_not() gives the reason. Without settings.session it then looks for others for a moment;
+  // it talks to one engine only, until that is silent.
   bool connect(double timeout);
+  // Asks who is there and listens for this time, longer while somebody has not answered.
+  std::vector<EngineIdentity> look(double seconds);
+  // The engines heard so far, oldest first.
+  std::vector<EngineIdentity> engines() const;
+  // Whether messages of another version of this program were heard.
+  bool other_version() const;
   bool connected() const;
   // Reason for a failed connect() or a silent engine, as text: no answer, another key, ...
   std::string why_not() const;

@@ -2,10 +2,12 @@
 #include "engine/lcm/link.h"
 
 #include <sodium.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <footfall_lcm/answer_t.hpp>
 #include <footfall_lcm/catalogue_t.hpp>
 #include <footfall_lcm/hello_t.hpp>
@@ -18,6 +20,7 @@
 #include <utility>
 
 #include "core/process/machine_error.h"
+#include "engine/live/host_name.h"
 #include "engine/live/snapshot.h"
 #include "engine/tick/control_loop.h"
 
@@ -44,11 +47,15 @@ std::int64_t random_number() {
 
 // The link's data for one loop.
 struct LinkBinding final : LiveBinding {
-  LinkBinding(ControlLoop& loop, double rate)
-      : behavior(loop.behavior()), entrance(loop.edits().entrance(kEntrance)), feed(loop, rate) {}
+  LinkBinding(ControlLoop& loop, const LinkSettings& how)
+      : behavior(loop.behavior()),
+        entrance(loop.edits().entrance(kEntrance)),
+        feed(loop, how.telemetry),
+        edited(behavior, how.world) {}
   const behaviors::Behavior& behavior;
   EditEntrance& entrance;
   LiveFeed feed;
+  behaviors::EditedValues edited;
 };
 
 std::int64_t LinkCounters::rejected_in_all() const noexcept {
@@ -58,12 +65,20 @@ std::int64_t LinkCounters::rejected_in_all() const noexcept {
 struct LcmLink::Impl {
   Impl(ControlLoop& loop, const LinkSettings& how)
       : settings(how),
-        binding(std::make_unique<LinkBinding>(loop, how.telemetry)),
+        binding(std::make_unique<LinkBinding>(loop, how)),
         posting(binding.get()),
-        server(loop.behavior(), binding->entrance, {random_number(), how.key.has_value()}),
+        server(loop.behavior(), binding->entrance, identity(how.key.has_value())),
         bus(how.url) {
+    server.judge_by(&binding->edited);
     bus.subscribe(channel("HELLO"), [this](auto packet) { take_hello(packet); });
     bus.subscribe(channel("REQUEST"), [this](auto packet) { take_request(packet); });
+  }
+
+  static LiveSettings identity(bool keyed) {
+    LiveSettings own{random_number(), keyed, host_name(), ::getpid(), 0};
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    own.start = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+    return own;
   }
 
   // --- The link's thread. ---
@@ -80,7 +95,18 @@ struct LcmLink::Impl {
     const PacketProblem problem = decode(packet, key(), message);
     if (problem == PacketProblem::none) return true;
     ++counters.rejected[static_cast<std::size_t>(problem)];
+    tell_version(problem);
     return false;
+  }
+
+  void tell_version(PacketProblem problem) {
+    const bool other =
+        problem == PacketProblem::wrong_type || problem == PacketProblem::other_protocol;
+    if (!other || std::exchange(version_told, true)) return;
+    std::fprintf(stderr,
+                 "footfall: warning: a program of another version sends to %s_*: it is not "
+                 "understood (this is protocol %d)\n",
+                 settings.prefix.c_str(), static_cast<int>(footfall_lcm::hello_t::PROTOCOL));
   }
 
   void take_hello(std::span<const std::uint8_t> packet) {
@@ -88,7 +114,7 @@ struct LcmLink::Impl {
     ++counters.heard_hello;
     if (!read(packet, hello)) return;
     ++counters.hellos;
-    catalogue_wanted = true;
+    catalogue_wanted |= hello.session == 0 || hello.session == server.session();
   }
 
   void take_request(std::span<const std::uint8_t> packet) {
@@ -156,6 +182,7 @@ struct LcmLink::Impl {
     server.rebind(next->behavior, next->entrance, "the behavior was loaded anew", answers);
     publish_answers();
     binding = std::move(next);
+    server.judge_by(&binding->edited);
     catalogue_wanted = true;
     rebinding.store(false, std::memory_order_release);
   }
@@ -207,7 +234,7 @@ struct LcmLink::Impl {
   footfall_lcm::telemetry_t telemetry;  // reused to keep its memory
   LinkCounters counters;
   std::int64_t dropped_before = 0;  // snapshots dropped by the feeds of replaced loops
-  bool catalogue_wanted = true, values_wanted = true, told_moving = false;
+  bool catalogue_wanted = true, values_wanted = true, told_moving = false, version_told = false;
   Clock::time_point catalogue_at, values_at;
 
   // --- Between the threads. ---
@@ -240,7 +267,7 @@ void LcmLink::stop() noexcept {
 }
 
 std::unique_ptr<LiveBinding> LcmLink::prepare(ControlLoop& loop) const {
-  return std::make_unique<LinkBinding>(loop, impl_->settings.telemetry);
+  return std::make_unique<LinkBinding>(loop, impl_->settings);
 }
 
 void LcmLink::rebind(std::unique_ptr<LiveBinding> binding) noexcept {

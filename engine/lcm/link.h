@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "behaviors/check/physics/check.h"
 #include "engine/lcm/bus.h"
 #include "engine/live/codec.h"
 #include "engine/live/key.h"
@@ -21,8 +22,9 @@ namespace footfall::engine {
 struct LinkSettings {
   std::string url = kLiveUrl;
   std::string prefix = kLivePrefix;
-  std::optional<LiveKey> key;  // none: requests of all clients are accepted
-  double telemetry = 50.0;     // messages per second of the run; 0: none
+  std::optional<LiveKey> key;       // none: requests of all clients are accepted
+  double telemetry = 50.0;          // messages per second of the run; 0: none
+  behaviors::PhysicsWorld world{};  // edits are judged in it, as `run` judges a behavior
 };
 
 struct LinkCounters {

@@ -31,6 +31,8 @@ void add_parameter(const Behavior& behavior, const ParameterInfo& info,
   out.min = info.min;
   out.max = info.max;
   out.gain = info.gain ? 1 : 0;
+  out.axes = info.axes;
+  out.axis_count = count_of(out.axes);
   out.doc = info.doc;
   for (int slot = info.slot; slot < info.slot + info.size; ++slot) {
     catalogue.values.push_back(behavior.values[at(slot)]);
@@ -51,6 +53,12 @@ void fill_names(const Behavior& behavior, const LiveNames& names,
   }
   catalogue.parameter_count = static_cast<std::int32_t>(catalogue.parameters.size());
   catalogue.value_count = static_cast<std::int32_t>(catalogue.values.size());
+  for (const ParameterInfo& info : behavior.parameters) {
+    if (info.live) continue;
+    catalogue.fixed.push_back(info.name);
+    catalogue.fixed_reasons.push_back(reason_not_live(info));
+  }
+  catalogue.fixed_count = count_of(catalogue.fixed);
   catalogue.events = names.event_names;
   catalogue.event_docs.resize(catalogue.events.size());
   catalogue.event_count = count_of(catalogue.events);

@@ -105,11 +105,19 @@ bool has_fingerprint(std::span<const std::uint8_t> packet, std::int64_t fingerpr
   return bits == static_cast<std::uint64_t>(fingerprint);
 }
 
+// The protocol is the first field of a message of a channel. A shorter packet is malformed.
+bool is_of_other_protocol(std::span<const std::uint8_t> packet) {
+  if (packet.size() < kFingerprintBytes + 4) return false;
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < 4; ++k) bits = bits << 8 | packet[kFingerprintBytes + k];
+  return bits != static_cast<std::uint32_t>(hello_t::PROTOCOL);
+}
+
 }  // namespace
 
 const char* packet_problem_name(PacketProblem problem) {
-  constexpr const char* kNames[] = {"none", "too large", "of another type", "not authentic",
-                                    "malformed"};
+  constexpr const char* kNames[] = {
+      "none", "too large", "of another type", "of another protocol", "not authentic", "malformed"};
   return kNames[static_cast<std::size_t>(problem)];
 }
 
@@ -120,6 +128,9 @@ PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
   if (packet.size() > static_cast<std::size_t>(Message::LARGEST_PACKET))
     return PacketProblem::too_large;
   if (!has_fingerprint(packet, Message::getHash())) return PacketProblem::wrong_type;
+  if constexpr (requires { message.protocol; }) {
+    if (is_of_other_protocol(packet)) return PacketProblem::other_protocol;
+  }
   if (key != nullptr && is_signed(layout) && !authentic(packet, *key)) {
     return PacketProblem::not_authentic;
   }
@@ -139,6 +150,7 @@ PacketProblem decode(std::span<const std::uint8_t> packet, const LiveKey* key,
 template <class Message>
 PacketBytes encode(Message message, const LiveKey* key) {
   settle(message);
+  if constexpr (requires { message.protocol; }) message.protocol = hello_t::PROTOCOL;
   const std::string_view layout = layout_of(message);
   PacketBytes packet(static_cast<std::size_t>(message.getEncodedSize()));
   const int size = message.encode(packet.data(), 0, static_cast<int>(packet.size()));

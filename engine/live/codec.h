@@ -13,10 +13,11 @@ namespace footfall::engine {
 // Reasons to reject a packet.
 enum class PacketProblem : std::uint8_t {
   none,
-  too_large,      // for a message of its type
-  wrong_type,     // another fingerprint
-  not_authentic,  // signed with another key, or unsigned
-  malformed,      // invalid counts, lengths, texts or packet size
+  too_large,       // for a message of its type
+  wrong_type,      // another fingerprint
+  other_protocol,  // hello_t.PROTOCOL of the sender
+  not_authentic,   // signed with another key, or unsigned
+  malformed,       // invalid counts, lengths, texts or packet size
   count,
 };
 const char* packet_problem_name(PacketProblem problem);

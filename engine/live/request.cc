@@ -20,7 +20,7 @@ using behaviors::ParameterInfo;
 
 constexpr std::size_t kMaxName = 96;       // bytes, for a name in a text
 constexpr std::size_t kMaxReasons = 32;    // in one answer
-constexpr std::size_t kMaxReason = 240;    // bytes
+constexpr std::size_t kMaxReason = 480;    // bytes
 constexpr std::size_t kMaxMentioned = 16;  // in one text
 constexpr std::size_t kFewChanges = 32;    // always evaluated
 
@@ -49,11 +49,8 @@ std::string cut_change(const Behavior& behavior, std::span<const behaviors::Slot
   }
   const bool whole = count == at(info.size);
   if (!whole) count = 1;
-  std::string text = info.name, list;
-  if (!whole) {
-    const int component = slot - info.slot;
-    text += info.size <= 3 ? fmt::format(".{}", "xyz"[component]) : fmt::format("[{}]", component);
-  }
+  const std::string text = whole ? info.name : value_name(info, slot - info.slot);
+  std::string list;
   for (const auto& [ignored, value] : values.first(count)) {
     list += (list.empty() ? "" : ", ") + number_with_unit(value, info.dimension);
   }

@@ -41,10 +41,11 @@ struct LiveServer::Impl {
     answer_t answer;  // as far as known
     std::int8_t what = request_t::EDIT;
     std::vector<behaviors::SlotValue> values;  // of an EDIT
+    double over = 0.0;                         // s, its ramp
   };
 
   Impl(const Behavior& b, EditEntrance& e, const LiveSettings& s)
-      : behavior(&b), entrance(&e), names(b), settings(s) {}
+      : behavior(&b), entrance(&e), names(b), settings(s), targets(b.values) {}
 
   std::int64_t revision() const noexcept { return revision_of(entrance->revision()); }
   std::int64_t revision_of(std::uint64_t door) const noexcept {
@@ -54,6 +55,8 @@ struct LiveServer::Impl {
   bool is_known(const request_t& request, const answer_t& answer, Answers& answers);
   void process(const request_t& request, Answers& answers);
   EditBatch batch_of(const request_t& request, std::vector<std::string>& reasons) const;
+  std::vector<std::string> physics_against(const EditBatch& batch);
+  void follow(const LiveState& state);
   void take(const EditAnswer& told, std::span<const double> former, Answers& answers);
   void remember(const Pending& done, std::span<const double> former);
   void take_answers(Answers& answers);
@@ -68,6 +71,9 @@ struct LiveServer::Impl {
   std::deque<Pending> pending;    // submitted to the door, in order
   std::deque<request_t> waiting;  // queued until the door has answered
   std::vector<double> former;
+  behaviors::EditedValues* edited = nullptr;
+  std::vector<double> targets;         // values of live parameters after all applied edits, by slot
+  std::uint64_t targets_revision = 0;  // of the door
   LiveHistory history;
   LiveClients clients;
   LiveCounters counters;
@@ -115,8 +121,9 @@ bool LiveServer::Impl::is_known(const request_t& request, const answer_t& answer
     refuse(answer, {std::move(reason)}, false, answers);
     return true;
   };
-  if (request.session != settings.session) {
-    return no("the session is another one: read the catalogue again");
+  if (request.session != settings.session) {  // to another engine: that one answers
+    ++counters.refused;
+    return true;
   }
   if (request.sequence < 1) return no("sequence: a client counts its requests from 1");
   switch (clients.look(request.client, request.sequence)) {
@@ -154,7 +161,8 @@ EditBatch LiveServer::Impl::batch_of(const request_t& request,
     } else {
       batch.values = undo ? change->before : change->after;
     }
-    batch.over = request.over;
+    // Of its own duration, unless another one is asked for.
+    batch.over = request.over != 0.0 || change == nullptr ? request.over : change->over;
   } else {
     reasons.push_back(fmt::format("what: 0 (edit), 1 (undo) or 2 (redo) was expected, got {}",
                                   static_cast<int>(request.what)));
@@ -172,6 +180,33 @@ EditBatch LiveServer::Impl::batch_of(const request_t& request,
   return batch;
 }
 
+// Reasons for which `run` would refuse to start with the values after this batch.
+std::vector<std::string> LiveServer::Impl::physics_against(const EditBatch& batch) {
+  if (edited == nullptr || batch.values.empty()) return {};
+  std::vector<double> values = targets;
+  const auto apply = [&values](const std::vector<behaviors::SlotValue>& changes) {
+    for (const auto& [slot, value] : changes) values[at(slot)] = value;
+  };
+  for (const Pending& earlier : pending) apply(earlier.values);
+  apply(batch.values);
+  std::vector<std::string> reasons;
+  for (const core::Diagnostic& error : edited->errors(values)) {
+    reasons.push_back("`run` would refuse it: " + error.text);
+  }
+  return reasons;
+}
+
+// Values that others edited, or that an edit of this server had applied.
+void LiveServer::Impl::follow(const LiveState& state) {
+  if (state.revision < targets_revision) return;
+  for (const int p : names.parameters) {
+    const ParameterInfo& info = behavior->parameters[at(p)];
+    for (int slot = info.slot; slot < info.slot + info.size; ++slot) {
+      targets[at(slot)] = state.target[at(slot)];
+    }
+  }
+}
+
 void LiveServer::Impl::process(const request_t& request, Answers& answers) {
   std::vector<std::string> reasons;
   EditBatch batch = batch_of(request, reasons);
@@ -186,20 +221,25 @@ void LiveServer::Impl::process(const request_t& request, Answers& answers) {
     }
     return refuse(std::move(answer), std::move(reasons), true, answers);
   }
+  // Only a batch that is good otherwise: indices and ranges were checked.
+  if (reasons_against(*behavior, batch, entrance->revision()).empty()) {
+    reasons = physics_against(batch);
+    if (!reasons.empty()) return refuse(std::move(answer), std::move(reasons), true, answers);
+  }
   EditReply reply = entrance->submit(batch);
   if (!reply.accepted()) {
     return refuse(std::move(answer), std::move(reply.reasons), true, answers);
   }
   answer.text = batch.note.empty() ? "" : batch.note + ": ";
   answer.text += change_text(*behavior, batch, ramp_time(*behavior, batch));
-  pending.push_back({std::move(answer), request.what, std::move(batch.values)});
+  pending.push_back({std::move(answer), request.what, std::move(batch.values), batch.over});
 }
 
 void LiveServer::Impl::remember(const Pending& done, std::span<const double> before) {
   if (done.what == request_t::UNDO) return history.undid();
   if (done.what == request_t::REDO) return history.redid();
   if (done.values.empty()) return;  // events only
-  LiveChange change{done.values, done.values};
+  LiveChange change{done.values, done.values, done.over};
   for (std::size_t k = 0; k < change.before.size(); ++k) change.before[k].value = before[k];
   history.changed(std::move(change));
 }
@@ -221,6 +261,8 @@ void LiveServer::Impl::take(const EditAnswer& told_by_tick, std::span<const doub
     answer.tick = told_by_tick.tick;
     answer.revision = revision_of(told_by_tick.revision);
     remember(done, before);
+    for (const auto& [slot, value] : done.values) targets[at(slot)] = value;
+    targets_revision = told_by_tick.revision;
     ++counters.applied;
   }
   clients.keep(answer);
@@ -274,6 +316,9 @@ void LiveServer::fill_catalogue(footfall_lcm::catalogue_t& catalogue) const {
   catalogue.generation = m.generation;
   catalogue.revision = m.revision();
   catalogue.keyed = m.settings.keyed ? 1 : 0;
+  catalogue.host = m.settings.host;
+  catalogue.pid = m.settings.pid;
+  catalogue.start = m.settings.start;
 }
 
 void LiveServer::fill_values(const LiveState& state, footfall_lcm::values_t& values) {
@@ -282,6 +327,7 @@ void LiveServer::fill_values(const LiveState& state, footfall_lcm::values_t& val
   values.generation = m.generation;
   values.revision = m.told = m.revision_of(state.revision);
   values.tick = state.tick;
+  m.follow(state);
   values.undo_count = static_cast<std::int32_t>(m.history.undo_count());
   values.redo_count = static_cast<std::int32_t>(m.history.redo_count());
   values.now.clear();
@@ -296,6 +342,7 @@ void LiveServer::fill_values(const LiveState& state, footfall_lcm::values_t& val
   values.count = count_of(values.now);
 }
 
+void LiveServer::judge_by(behaviors::EditedValues* edited) { impl_->edited = edited; }
 bool LiveServer::changed() const noexcept { return impl_->revision() != impl_->told; }
 std::int64_t LiveServer::session() const noexcept { return impl_->settings.session; }
 std::int64_t LiveServer::generation() const noexcept { return impl_->generation; }
@@ -315,6 +362,9 @@ void LiveServer::rebind(const Behavior& behavior, EditEntrance& entrance, const 
   m.names = LiveNames(behavior);
   m.base = next - static_cast<std::int64_t>(entrance.revision());  // the count continues
   m.history.clear();
+  m.edited = nullptr;
+  m.targets = behavior.values;
+  m.targets_revision = entrance.revision();
   ++m.generation;
   for (const Impl::Pending& p : std::exchange(m.pending, {})) {
     answer_t answer = p.answer;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "behaviors/check/physics/check.h"
 #include "engine/edits/door.h"
 
 namespace footfall_lcm {
@@ -33,6 +34,9 @@ struct LiveState {
 struct LiveSettings {
   std::int64_t session = 0;  // random number of the run
   bool keyed = true;         // requests need the key; only reported to clients, not checked here
+  // Identity for clients: host, process, start (us since 1970).
+  std::string host{};
+  std::int64_t pid = 0, start = 0;
 };
 
 // Numbers of requests with a valid key, by result.
@@ -51,6 +55,10 @@ class LiveServer {
   LiveServer(const behaviors::Behavior& behavior, EditEntrance& entrance,
              const LiveSettings& settings);
   ~LiveServer();
+
+  // Edits are judged by this from now on, until the next rebind(): with what `run` would refuse to
+  // start, no edit is accepted. nullptr: not judged. Not owned.
+  void judge_by(behaviors::EditedValues* edited);
 
   // Handles a request whose key was already checked. Immediate answers (refusals, repetitions) are
   // appended to `answers`; the others are returned by poll(). Each (client, sequence) is executed

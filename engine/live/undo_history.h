@@ -11,6 +11,7 @@ namespace footfall::engine {
 // A change of values: previous values (or ramp targets) and new ones.
 struct LiveChange {
   std::vector<behaviors::SlotValue> before, after;
+  double over = 0.0;  // s, its ramp: undone and redone alike
 };
 
 class LiveHistory {

@@ -176,6 +176,13 @@ std::vector<double> read_values(ScenarioContext& context, const YamlNode& node,
   std::vector<double> values;
   if (!node.is_sequence()) {
     read_value(context, node, info, values);
+    if (info.size > 1 && !info.gain) {
+      context.error(node.mark, "expected",
+                    fmt::format("expected {} values for '{}', [X, Y], or one by its name, {}; one "
+                                "number for all is for gains",
+                                info.size, info.name, value_name(info, 0)));
+      return {};
+    }
     if (values.size() == 1) values.resize(static_cast<std::size_t>(info.size), values[0]);
     return values;
   }
@@ -210,9 +217,9 @@ std::vector<behaviors::SlotValue> read_changes(ScenarioContext& context, const Y
     ParameterInfo info = behavior.parameters[static_cast<std::size_t>(parameter)];
     if (edit && !info.live) {
       context.error(entry.key_mark, "misplaced-name",
-                    fmt::format("parameter '{}' is not live: write it under 'set', or give it a "
-                                "range and 'live: true'",
-                                info.name));
+                    fmt::format("parameter '{}' is not live: write it under 'set'{}", info.name,
+                                info.variable ? " (an action sets it, so it cannot be live)"
+                                              : ", or give it a range and 'live: true'"));
       continue;
     }
     if (component >= 0) {  // `goal.y` is read like a scalar parameter

@@ -45,6 +45,9 @@ TuneParameter parameter_of(const footfall_lcm::parameter_t& told,
   parameter.first = told.first;
   parameter.size = told.size;
   parameter.gain = told.gain != 0;
+  if (std::ssize(told.axes) == told.size) {
+    for (const std::string& axis : told.axes) parameter.axes.push_back(core::on_one_line(axis));
+  }
   if (const auto unit = core::parse_unit(told.unit)) parameter.dimension = unit->dimension;
   if (told.has_range != 0) {
     parameter.min = told.min;
@@ -60,6 +63,9 @@ TuneParameter parameter_of(const footfall_lcm::parameter_t& told,
 std::string component_name(const TuneParameter& parameter, int component) {
   constexpr int kAxes = 3;
   if (parameter.size == 1) return parameter.name;
+  if (!parameter.axes.empty()) {
+    return fmt::format("{}.{}", parameter.name, parameter.axes[at(component)]);
+  }
   if (parameter.gain || parameter.size > kAxes) {
     return fmt::format("{}[{}]", parameter.name, component);
   }
@@ -84,30 +90,42 @@ void list_entries(TuneModel& model) {
   }
 }
 
-// Removes a component suffix, `.x` or `[1]`, from a name; returns its index, -1 if none.
-int cut_component(std::string_view& name) {
-  if (name.ends_with(']')) {
-    const std::size_t open = name.rfind('[');
+// The component that a name's last part means, `x`, `pitch` or `1]`; -1 if none, the size or more
+// if there are fewer values.
+int component_of(const TuneParameter& parameter, std::string_view last) {
+  if (last.ends_with(']')) {
     int component = -1;
-    const char* const end = name.data() + name.size() - 1;
-    if (open == std::string_view::npos) return -1;
-    const auto [stop, error] = std::from_chars(name.data() + open + 1, end, component);
-    if (error != std::errc() || stop != end || component < 0) return -1;
-    name = name.substr(0, open);
-    return component;
+    const char* const end = last.data() + last.size() - 1;
+    const auto [stop, error] = std::from_chars(last.data(), end, component);
+    return error == std::errc() && stop == end ? component : -1;
   }
-  if (name.size() > 2 && name[name.size() - 2] == '.' && name.back() >= 'x' && name.back() <= 'z') {
-    const int component = name.back() - 'x';
-    name.remove_suffix(2);
-    return component;
-  }
-  return -1;
+  const auto named = std::ranges::find(parameter.axes, last);
+  if (named != parameter.axes.end()) return static_cast<int>(named - parameter.axes.begin());
+  const bool letter =
+      parameter.axes.empty() && last.size() == 1 && last[0] >= 'x' && last[0] <= 'z';
+  return letter ? last[0] - 'x' : -1;
 }
 
 std::vector<std::string> names_of(const TuneModel& model) {
   std::vector<std::string> names;
   for (const TuneParameter& parameter : model.parameters) names.push_back(parameter.name);
   return names;
+}
+
+// Why a name cannot be changed: it is unknown, or not live.
+std::string unknown_parameter(const TuneModel& model, std::string_view name) {
+  const auto& fixed = model.catalogue.fixed;
+  for (std::size_t k = 0; k < fixed.size(); ++k) {
+    const bool part = name.starts_with(fixed[k]) && name.size() > fixed[k].size() &&
+                      (name[fixed[k].size()] == '.' || name[fixed[k].size()] == '[');
+    if ((name != fixed[k] && !part) || k >= model.catalogue.fixed_reasons.size()) continue;
+    return fmt::format("'{}' is not live, because {}", name,
+                       core::on_one_line(model.catalogue.fixed_reasons[k]));
+  }
+  std::vector<std::string> names = names_of(model);
+  for (const TuneEntry& entry : model.entries) names.push_back(entry.name);
+  names.insert(names.end(), fixed.begin(), fixed.end());
+  return fmt::format("unknown parameter '{}'{}", name, core::did_you_mean(name, names));
 }
 
 const TuneParameter* find_exactly(const TuneModel& model, std::string_view name) {
@@ -132,17 +150,17 @@ footfall_lcm::change_t read_change(const TuneModel& model, std::string_view text
     problem = fmt::format("expected NAME=VALUE, got '{}'", text);
     return {};
   }
-  std::string_view name = text.substr(0, equals);
-  const std::string_view written = name;
+  const std::string_view written = text.substr(0, equals);
   int component = -1;
-  const TuneParameter* parameter = find_exactly(model, name);
-  if (parameter == nullptr) {
-    component = cut_component(name);
-    if (component >= 0) parameter = find_exactly(model, name);
+  const TuneParameter* parameter = find_exactly(model, written);
+  const std::size_t last = written.find_last_of(written.ends_with(']') ? '[' : '.');
+  if (parameter == nullptr && last != std::string_view::npos) {
+    parameter = find_exactly(model, written.substr(0, last));
+    if (parameter != nullptr) component = component_of(*parameter, written.substr(last + 1));
+    if (component < 0) parameter = nullptr;
   }
   if (parameter == nullptr) {
-    problem = fmt::format("unknown parameter '{}'{}", written,
-                          core::did_you_mean(written, names_of(model)));
+    problem = unknown_parameter(model, written);
     return {};
   }
   if (component >= parameter->size) {
@@ -151,8 +169,12 @@ footfall_lcm::change_t read_change(const TuneModel& model, std::string_view text
     return {};
   }
   ReadValues read = read_values(text.substr(equals + 1), parameter->dimension,
-                                component < 0 ? parameter->size : 1);
+                                component < 0 ? parameter->size : 1, parameter->gain);
   if (!read.problem.empty()) problem = fmt::format("{}: {}", written, read.problem);
+  if (read.values.size() == 1 && !problem.empty()) {
+    problem += fmt::format(": {}={} sets one, \"{}=[...]\" all", component_name(*parameter, 0),
+                           text.substr(equals + 1), written);
+  }
   return change(parameter->name, component, std::move(read.values));
 }
 
@@ -258,8 +280,7 @@ std::vector<int> find_parameters(const TuneModel& model, std::string_view name,
   }
   if (found.empty()) {
     problem = core::is_glob(name) ? fmt::format("no live parameter or gain matches '{}'", name)
-                                  : fmt::format("unknown parameter '{}'{}", name,
-                                                core::did_you_mean(name, names_of(model)));
+                                  : unknown_parameter(model, name);
   }
   return found;
 }

@@ -27,6 +27,7 @@ struct TuneParameter {
   DisplayUnit unit;
   double min = 0.0, max = 0.0;  // SI; equal: no limits
   bool gain = false;
+  std::vector<std::string> axes;  // names of the values; none: x, y, z
   std::string doc;
 
   bool has_range() const { return min < max; }
@@ -34,7 +35,7 @@ struct TuneParameter {
 
 // One value that keys can step: a scalar parameter, or a component of another one.
 struct TuneEntry {
-  std::string name;  // `lift_time`, `goal.x`, `gains.single.swing.kp[1]`
+  std::string name;  // `lift_time`, `goal.x`, `gains.single.attitude.kp.pitch`
   int parameter = 0;
   int component = -1;  // -1 for a scalar
   int slot = 0;        // index into the value arrays
@@ -89,7 +90,8 @@ std::vector<int> find_parameters(const TuneModel& model, std::string_view name,
                                  std::string& problem);
 
 // Parses `NAME=VALUE` texts; every problem is one line of text. NAME may be one component:
-// `goal.x`, `gains.single.swing.kp[1]`.
+// `goal.x`, `gains.single.attitude.kp.pitch` (or `kp[0]`). One number for several values is for
+// gains only.
 std::vector<footfall_lcm::change_t> read_changes(const TuneModel& model,
                                                  const std::vector<std::string>& texts,
                                                  std::vector<std::string>& problems);

@@ -105,7 +105,8 @@ std::string exact_values(std::span<const double> values, const DisplayUnit& unit
   return list_text(numbers, unit);
 }
 
-ReadValues read_values(std::string_view text, core::Dimension dimension, int count) {
+ReadValues read_values(std::string_view text, core::Dimension dimension, int count,
+                       bool broadcast) {
   ReadValues read;
   text = trimmed(text);
   // For one value `0,15s` would be two.
@@ -125,6 +126,10 @@ ReadValues read_values(std::string_view text, core::Dimension dimension, int cou
   }
   if (!read.problem.empty()) return read;
   const auto wanted = static_cast<std::size_t>(count);
+  if (read.values.size() == 1 && wanted > 1 && !broadcast) {
+    read.problem = fmt::format("expected {} values, got one", count);
+    return read;
+  }
   if (read.values.size() == 1) read.values.resize(wanted, read.values[0]);
   if (read.values.size() != wanted) {
     read.problem = fmt::format("expected {} value{}, got {}", count, count == 1 ? "" : "s",

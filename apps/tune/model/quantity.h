@@ -33,8 +33,9 @@ struct ReadValues {
   std::string problem;         // empty if valid
 };
 // `150 ms`, `0.15`, `[1 m, 0.5 m]`, `220, 237, 400`, `[1, 2] cm`: bare numbers are SI; a single
-// number is used for all of `count`.
-ReadValues read_values(std::string_view text, core::Dimension dimension, int count);
+// number is used for all of `count` only with `broadcast`.
+ReadValues read_values(std::string_view text, core::Dimension dimension, int count,
+                       bool broadcast = true);
 // A duration such as `500ms`, 0 or more; nullopt if malformed.
 std::optional<double> read_duration(std::string_view text);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "behaviors/check/physics/configurations.h"
@@ -52,6 +53,24 @@ void check_contact_types(const Behavior& behavior, const ControlSpec& control,
   findings.settle(1);
 }
 
+// Contacts, ranks and internal forces of every configuration; false if there are too many.
+bool check_configurations(PhysicsContext& context) {
+  std::set<std::vector<int>> judged;
+  for (const auto& [index, state] : controlling_states(context.behavior)) {
+    const ControlSpec& control = context.behavior.controls[at(index)];
+    if (!judged.insert(signature(context.behavior, control)).second) continue;
+    if (judged.size() > kMaxJudged) return false;
+    check_contact_types(context.behavior, control, context.findings);
+    for (const model::State& posture : context.postures) {
+      context.model.update(posture);
+      check_ranks(context, control, context.behavior.states[at(state)].mark);
+    }
+    context.findings.settle(static_cast<int>(context.postures.size()));
+    check_internal_forces(context, control);
+  }
+  return true;
+}
+
 }  // namespace
 
 void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
@@ -63,24 +82,11 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
   const std::vector<model::State> postures = physics_postures(behavior.robot);
   PhysicsFindings findings;
   PhysicsContext context = {behavior, model, law, postures, findings, world};
-  std::set<std::vector<int>> judged;
-  for (const auto& [index, state] : controlling_states(behavior)) {
-    const ControlSpec& control = behavior.controls[at(index)];
-    if (!judged.insert(signature(behavior, control)).second) continue;
-    if (judged.size() > kMaxJudged) {
-      diagnostics.warning(behavior.states.front().mark, "too-many",
-                          fmt::format("physics is judged in the first {} different configurations, "
-                                      "and not in the others",
-                                      kMaxJudged));
-      break;
-    }
-    check_contact_types(behavior, control, findings);
-    for (const model::State& posture : postures) {
-      model.update(posture);
-      check_ranks(context, control, behavior.states[at(state)].mark);
-    }
-    findings.settle(static_cast<int>(postures.size()));
-    check_internal_forces(context, control);
+  if (!check_configurations(context)) {
+    diagnostics.warning(behavior.states.front().mark, "too-many",
+                        fmt::format("physics is judged in the first {} different configurations, "
+                                    "and not in the others",
+                                    kMaxJudged));
   }
   check_references(context);
   check_feed_forward(context);
@@ -89,6 +95,82 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
   check_planners(context);
   check_torque_steps(context);
   findings.report(diagnostics);
+  if (!diagnostics.has_errors()) check_live_ranges(behavior, world, diagnostics);
+}
+
+struct EditedValues::Impl {
+  Impl(const Behavior& of, const PhysicsWorld& in)
+      : behavior(of),
+        world(in),
+        model(behavior.robot),
+        law(behavior, model),
+        postures(physics_postures(behavior.robot)) {
+    const auto weighted = [](const AxisSpec& axis) { return axis.weight >= 0; };
+    all = !behavior.internals.empty() || std::ranges::any_of(behavior.axes, weighted);
+    const auto computed = [](const AxisSpec& axis) {
+      return std::ranges::any_of(axis.computed, [](int gain) { return gain >= 0; });
+    };
+    gains = std::ranges::any_of(behavior.axes, computed);
+    for (const AxisSpec& axis : behavior.axes) note_reference(axis.value);
+    for (const WaypointSpec& point : behavior.waypoints) {
+      for (const int to : point.to) note_reference(to);
+    }
+  }
+  void note_reference(int expression) {
+    if (expression < 0) return;
+    for (const int parameter : dependence_of(behavior, expression).parameters) {
+      in_references.insert(parameter);
+    }
+  }
+  // Whether the values differ from the behavior's own in a parameter of a kind: else what only
+  // depends on those was judged before the run.
+  template <class Kind>
+  bool changed(std::span<const double> values, const Kind& kind) const {
+    for (std::size_t p = 0; p < behavior.parameters.size(); ++p) {
+      const ParameterInfo& info = behavior.parameters[p];
+      if (!kind(static_cast<int>(p))) continue;
+      for (int k = info.slot; k < info.slot + info.size; ++k) {
+        if (values[at(k)] != original[at(k)]) return true;
+      }
+    }
+    return false;
+  }
+  Behavior behavior;
+  PhysicsWorld world;
+  model::ControlModel model;
+  PhysicsLaw law;
+  std::vector<model::State> postures;
+  std::vector<double> original = behavior.values;
+  bool all = false;    // whether ranks and forces may depend on values
+  bool gains = false;  // whether gains may depend on parameters
+  std::set<int> in_references;
+};
+
+EditedValues::EditedValues(const Behavior& behavior, const PhysicsWorld& world)
+    : impl_(behavior.has_robot ? std::make_unique<Impl>(behavior, world) : nullptr) {}
+EditedValues::~EditedValues() = default;
+
+std::vector<core::Diagnostic> EditedValues::errors(std::span<const double> values) {
+  if (impl_ == nullptr) return {};
+  Impl& m = *impl_;
+  const auto is_gain = [&m](int p) { return m.behavior.parameters[at(p)].gain; };
+  const bool gains = m.gains || m.changed(values, is_gain);
+  const bool references = m.changed(values, [&m](int p) { return m.in_references.contains(p); });
+  m.behavior.values.assign(values.begin(), values.end());
+  PhysicsFindings findings;
+  PhysicsContext context = {m.behavior, m.model, m.law, m.postures, findings, m.world};
+  if (m.all) check_configurations(context);
+  if (references) check_references(context);
+  if (gains) check_gains(context);
+  check_force_feedback(context);
+  check_planners(context);
+  core::Diagnostics diagnostics;
+  findings.report(diagnostics);
+  std::vector<core::Diagnostic> errors;
+  for (const core::Diagnostic& item : diagnostics.all()) {
+    if (item.severity == core::Severity::error) errors.push_back(item);
+  }
+  return errors;
 }
 
 }  // namespace footfall::behaviors

@@ -4,7 +4,10 @@
 // `footfall check` and `footfall run` call it after the loader.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "behaviors/compiled/behavior.h"
 #include "core/diagnostics/diagnostics.h"
@@ -25,5 +28,20 @@ struct PhysicsWorld {
 // be compiled.
 void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
                    const PhysicsWorld& world = {});
+
+// The same checks of a behavior with other values of its parameters and gains: what a live edit or
+// a scenario's would lead to. Keeps a copy of the behavior and its model; not for the tick.
+class EditedValues {
+ public:
+  explicit EditedValues(const Behavior& behavior, const PhysicsWorld& world = {});
+  ~EditedValues();
+
+  // The errors with which `run` would refuse these values (of Behavior::values, by slot).
+  std::vector<core::Diagnostic> errors(std::span<const double> values);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace footfall::behaviors

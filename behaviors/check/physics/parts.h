@@ -44,6 +44,10 @@ void check_feed_forward(PhysicsContext& context);
 void check_gains(PhysicsContext& context);
 // Step-to-step maps of the planners (planner_stability.cc).
 void check_planners(PhysicsContext& context);
+// Values over the ranges of live parameters, each with the others at their values
+// (live_ranges.cc).
+void check_live_ranges(const Behavior& behavior, const PhysicsWorld& world,
+                       core::Diagnostics& diagnostics);
 // Torque steps where contacts change (torque_steps.cc).
 void check_torque_steps(PhysicsContext& context);
 

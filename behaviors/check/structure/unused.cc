@@ -122,7 +122,36 @@ void check_planners(LoadContext& context) {
 
 }  // namespace
 
+namespace {
+
+// A value of --set that an entry at the start overwrites before anything reads it.
+void check_override(LoadContext& context, const std::string& name) {
+  const Behavior& behavior = context.behavior;
+  const int parameter = behavior.find_parameter_part(name).parameter;
+  if (parameter < 0 || !behavior.parameters[at(parameter)].variable) return;
+  const ParameterInfo& info = behavior.parameters[at(parameter)];
+  EntrySet entries(behavior);
+  for (const int s : entries.of_start()) {
+    const StateInfo& state = behavior.states[at(s)];
+    for (int a = state.on_entry.first; a < state.on_entry.end(); ++a) {
+      const ActionInfo& action = behavior.actions[at(a)];
+      const bool sets = action.kind == ActionKind::set && action.index >= info.slot &&
+                        action.index < info.slot + info.size;
+      const auto mark = context.set_marks.find(a);
+      if (!sets || mark == context.set_marks.end()) continue;
+      context.warning(mark->second, "unused",
+                      fmt::format("--set {} changes nothing: the entry of '{}' sets '{}' here, at "
+                                  "the start",
+                                  name, state.path, info.name));
+      return;
+    }
+  }
+}
+
+}  // namespace
+
 void check_unused(LoadContext& context) {
+  for (const auto& [name, text] : context.options.set) check_override(context, name);
   check_parameters(context);
   check_templates(context);
   check_torque_loops(context);

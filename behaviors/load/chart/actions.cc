@@ -49,6 +49,7 @@ void set_component(LoadContext& context, const ParameterInfo& info, int componen
     context.error(node.mark, "out-of-range",
                   fmt::format("'{}' is outside the range of '{}'", node.scalar, info.name));
   }
+  context.set_marks[static_cast<int>(context.behavior.actions.size())] = node.mark;
   add(context, {ActionKind::set, info.slot + component, expression, info.min, info.max});
 }
 

@@ -116,6 +116,8 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
     info.size = static_cast<int>(values->size());
     info.dimension = kDimensions[k];
     info.gain = true;
+    info.axes = use.names;
+    info.mark = node->mark;
     if (const auto& range = context.gain_ranges[k]) {
       info.min = (*range)[0];
       info.max = (*range)[1];

@@ -187,7 +187,7 @@ TEST_F(ScenarioLoader, AValueOfTheWrongKindSizeOrRangeIsRefused) {
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {lift_time: 2 N}}]"),
             "4:38: error: expected a time, got '2 N'\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {lift_time: 1 s}}]"),
-            "4:38: error: expected 'lift_time' from 0.08 to 0.4 s, got '1 s'\n");
+            "4:38: error: expected 'lift_time' from 0.11 to 0.16 s, got '1 s'\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal: [1 m]}}]"),
             "4:33: error: expected 2 values for 'goal', got 1\n");
   EXPECT_EQ(problems_of("script: [{at: 1 s, edit: {goal.x: 1001 m}}]"),

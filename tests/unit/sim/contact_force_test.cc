@@ -35,7 +35,9 @@ machine:
 
 struct SimRig {
   explicit SimRig(const std::string& text)
-      : behavior(load_inline(text)), backend(behavior->robot, sim::WorldDescription()), hardware(backend) {}
+      : behavior(load_inline(text)),
+        backend(behavior->robot, sim::WorldDescription()),
+        hardware(backend) {}
   std::unique_ptr<behaviors::Behavior> behavior;
   sim::MujocoBackend backend;
   Meddler hardware;

@@ -313,6 +313,19 @@ machine: {states: {a: {after: $t, to: a}}}
         self.refused(result, 2, "no terminal to ask on")
         self.assertEqual(pathlib.Path(path).read_text(), self.BASE)
 
+    def test_what_a_base_has_is_written_as_an_override_unless_the_base_is_meant(self):
+        base = self.write("b.yaml", self.BASE)
+        top = self.write("top.yaml", "# mine\nbase: b.yaml\n")
+        self.assertEqual(self.footfall("set", "top.yaml", "t=160ms", "--yes").returncode, 0)
+        self.assertEqual(pathlib.Path(base).read_text(), self.BASE)
+        self.assertEqual(pathlib.Path(top).read_text(), "# mine\nbase: b.yaml\nparameters:\n  t: {value: 160 ms}\n")
+        self.assertEqual(self.footfall("set", "top.yaml", "goal.y=2", "--into-base", "--yes").returncode, 0)
+        self.assertIn("[0, 2]", pathlib.Path(base).read_text())
+        self.write("gait.yaml", "base: balance_best\n")
+        self.refused(self.footfall("set", "gait.yaml", "lift_time=150ms", "--into-base", "--yes"), 2, "balance_best.yaml",
+                     "belongs to a library")
+        self.refused(self.footfall("set", "top.yaml", "t=160ms", "--into-base", "--to", "x.yaml"), 2, "--to")
+
     def test_a_file_on_top_takes_them_instead(self):
         path = self.write("b.yaml", self.BASE)
         self.assertEqual(self.footfall("set", "b.yaml", "t=160ms", "--to", "mine.yaml", "--yes").returncode, 0)
@@ -323,7 +336,7 @@ machine: {states: {a: {after: $t, to: a}}}
     def test_bad_input(self):
         path = self.write("b.yaml", self.BASE)
         for setting, words in (("tt=1", "tt: there is no such"), ("t=1 s", "outside its range"),
-                               ("t=1 N", "expected a time"), ("goal=[1]", "expected 2 values"),
+                               ("t=1 N", "expected a time"), ("goal=[1]", "expected 2 values"), ("goal=1", "goal.x=1"),
                                ("t", "NAME=VALUE"), ("t=", "t"), ("t=[", "t")):
             with self.subTest(setting):
                 self.refused(self.footfall("set", "b.yaml", setting, "--yes"), 2, words)

@@ -29,7 +29,7 @@ class Help(Case):
         self.assertEqual(len(result.stdout.splitlines()), 3)
         self.assertRegex(result.stdout, r"gains\.single\.height\.kp +1/s\^2 +gain 270, range 0 to 800, live")
         result = self.footfall("signals", "balance", "lift_time")
-        self.assertRegex(result.stdout, r"\$lift_time +s +parameter 0\.145, range 0\.08 to 0\.4, live")
+        self.assertRegex(result.stdout, r"\$lift_time +s +parameter 0\.145, range 0\.11 to 0\.16, live")
         result = self.footfall("signals", "balance", "lift_tiem")
         self.assertEqual((result.returncode, result.stdout), (2, ""))
 

@@ -114,6 +114,21 @@ machine:
         self.refused(self.run_it("balance", "--set", "lift_time"), 2, "lift_time")
         self.refused(self.run_it("balance", "--set", "lift_time=3s"), 2, "lift_time")
 
+    def test_set_of_a_variable_that_the_start_overwrites_is_warned_of(self):
+        result = self.run_it("balance_best", "--set", "height=0.95m", "--for", "10ms")
+        self.assertRegex(result.stderr, r"balance_best.yaml:\d+:\d+: warning: --set height changes nothing: the entry of 'sway'")
+
+    def test_an_edit_that_set_would_refuse_is_refused_when_the_scenario_is_loaded(self):
+        text = ("scenario: 1\nbehavior: balance_best\nfor: 1 s\nscript:\n  - {at: 100 ms, edit: {lift_time: 190 ms}}\n"
+                "  - {at: 200 ms, edit: {land_time: %s}}\nexpect: [{never: in(limp)}]\n")
+        path = self.write("s.yaml", text % "190 ms")  # each alone would do
+        words = ("s.yaml:6:", "with these values planner 'foot' diverges")
+        self.refused(self.run_it(path), 2, *words)
+        self.refused(self.footfall("check", path), 2, *words)
+        self.assertEqual(self.footfall("check", self.write("t.yaml", text % "160 ms")).returncode, 0)
+        self.refused(self.footfall("check", self.write("u.yaml", text.replace("land_time", "goal") % "1 m")), 2,
+                     "u.yaml:6:", "expected 2 values for 'goal'", "goal.x")
+
     def test_a_behavior_without_robot(self):
         self.refused(self.run_it(self.write("b.yaml", CHART)), 2, "robot")
 

@@ -24,8 +24,8 @@ std::vector<std::string> entry_names(const TuneModel& model) {
 
 TEST(TuneModel, ListsParametersBeforeGainsByNameWithTheirComponents) {
   EXPECT_THAT(entry_names(small_model()),
-              ElementsAre("goal.x", "goal.y", "lift_time", "gains.single.swing.kp[0]",
-                          "gains.single.swing.kp[1]", "gains.single.swing.kp[2]"));
+              ElementsAre("goal.x", "goal.y", "lift_time", "gains.single.swing.kp.pitch",
+                          "gains.single.swing.kp.roll", "gains.single.swing.kp.yaw"));
 }
 
 TEST(TuneModel, ACatalogueThatPointsOutsideItsValuesIsNotBelieved) {
@@ -76,9 +76,11 @@ TEST(TuneModel, ReadsChangesOfWholesAndParts) {
   std::vector<std::string> problems;
   const auto changes = read_changes(
       small_model(),
-      {"lift_time=150ms", "goal.y=20 cm", "gains.single.swing.kp[1]=240", "goal=1 m"}, problems);
+      {"lift_time=150ms", "goal.y=20 cm", "gains.single.swing.kp[1]=240", "goal=[1 m, 1 m]",
+       "gains.single.swing.kp=300", "gains.single.swing.kp.roll=210"},
+      problems);
   EXPECT_THAT(problems, ElementsAre());
-  ASSERT_EQ(changes.size(), 4U);
+  ASSERT_EQ(changes.size(), 6U);
   EXPECT_EQ(changes[0].name, "lift_time");
   EXPECT_EQ(changes[0].component, -1);
   EXPECT_THAT(changes[0].values, ElementsAre(0.15));
@@ -88,6 +90,25 @@ TEST(TuneModel, ReadsChangesOfWholesAndParts) {
   EXPECT_EQ(changes[2].component, 1);
   EXPECT_THAT(changes[3].values, ElementsAre(1.0, 1.0));
   EXPECT_EQ(changes[3].count, 2);
+  EXPECT_THAT(changes[4].values, ElementsAre(300.0, 300.0, 300.0));
+  EXPECT_EQ(changes[5].component, 1);
+}
+
+TEST(TuneModel, OneNumberForAPositionOfSeveralIsRefusedWithTheFormThatIsNeeded) {
+  std::vector<std::string> problems;
+  read_changes(small_model(), {"goal=1m"}, problems);
+  EXPECT_THAT(problems, ElementsAre("goal: expected 2 values, got one: goal.x=1m sets one, "
+                                    "\"goal=[...]\" all"));
+}
+
+TEST(TuneModel, AParameterThatIsNotLiveIsNotUnknown) {
+  std::vector<std::string> problems;
+  read_changes(small_model(), {"clearance=9cm", "clearance.x=9cm"}, problems);
+  EXPECT_THAT(problems, ElementsAre("'clearance' is not live, because the file says so",
+                                    "'clearance.x' is not live, because the file says so"));
+  std::string problem;
+  EXPECT_TRUE(find_parameters(small_model(), "clearance", problem).empty());
+  EXPECT_EQ(problem, "'clearance' is not live, because the file says so");
 }
 
 TEST(TuneModel, SaysEveryProblemOfChanges) {

@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import signal
@@ -35,6 +36,11 @@ def multicast_works():
             return ear.recv(8) == b"?"
         except OSError:
             return False
+
+
+def without_session(text):
+    """Each command names on stderr whom it talked to."""
+    return re.sub(r"^session \d+: .*, pid \d+ on .*\n", "", text, flags=re.M)
 
 
 class Live(unittest.TestCase):
@@ -80,14 +86,14 @@ class Live(unittest.TestCase):
 
     def good(self, *arguments):
         result = self.tune(*arguments)
-        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        self.assertEqual((result.returncode, without_session(result.stderr)), (0, ""), result.stdout)
         return result.stdout
 
     def refused(self, code, *arguments):
         result = self.tune(*arguments)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         self.assertEqual(result.stdout, "")
-        return result.stderr.splitlines()
+        return without_session(result.stderr).splitlines()
 
 
 class Commands(Live):
@@ -119,7 +125,7 @@ class Commands(Live):
         self.good("save", "--yes")
         changed = [(a, b) for a, b in zip(before.splitlines(), self.file.read_text().splitlines()) if a != b]
         self.assertEqual([b.split("}")[0].split("live")[0] for _, b in changed][0],
-                         "  lift_time: {value: 150 ms, range: [80 ms, 400 ms], ")
+                         "  lift_time: {value: 150 ms, range: [80 ms, 200 ms], ")
         self.assertEqual(len(changed), 2)
         self.assertEqual(self.good("diff"), "")
         self.assertIn("has these values already", self.good("save"))
@@ -140,6 +146,10 @@ class Commands(Live):
         self.assertEqual(self.refused(2, "set", "lift_tine=1", "goal=20kg"),
                          ["error: unknown parameter 'lift_tine' (did you mean 'lift_time'?)",
                           "error: goal: expected a length, got '20kg'"])
+        self.assertEqual(self.refused(2, "set", "clearance=9cm", "height=1m"),
+                         ["error: 'clearance' is not live, because the file does not say so: give it a range and "
+                          "'live: true'", "error: 'height' is not live, because the behavior's actions set it"])
+        self.assertIn("goal.x=1m sets one", self.refused(2, "set", "goal=1m")[0])
         self.assertIn("did you mean 'wave'", self.refused(2, "raise", "wafe")[0])
         self.assertIn("matches", self.refused(2, "list", "nothing*")[0])
         self.assertIn("did you mean 'com.pos.z'", self.refused(2, "watch", "com.pos.zz")[0])
@@ -156,10 +166,44 @@ class Commands(Live):
                 samples.append(told)
         watcher.send_signal(signal.SIGINT)
         _, errors = watcher.communicate(timeout=20)
-        self.assertEqual((watcher.returncode, errors), (0, ""))
+        self.assertEqual((watcher.returncode, without_session(errors)), (0, ""))
         self.assertTrue(all(0.8 < one["com.pos.z"] < 1.0 and one["lift_time"] > 0.1 for one in samples))
         self.assertEqual(sorted(samples, key=lambda one: one["tick"]), samples)
         self.assertIn("state", self.good("watch", "--for", "10ms").splitlines()[0])
+
+
+class TwoEngines(Live):
+    """A second run at the address of the first."""
+
+    def test_a_command_asks_which_and_reaches_that_one_only(self):
+        def number(text, pid):
+            return re.search(rf"pid {pid} .* session (\d+)$", text, flags=re.M)[1]
+
+        self.good("list")
+        second = subprocess.Popen(
+            [BINARY, "run", str(self.file), f"--lcm={self.url}", "--realtime", "--for", "100s", "--no-log"],
+            env=self.environment, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        try:
+            self.assertIn("warning: another engine is at", second.stdout.readline())
+            self.assertIn(f"footfall tune --url '{self.url}'", second.stdout.readline())
+            both = self.good("list-engines")
+            self.assertEqual(len(both.splitlines()), 2, both)
+            lines = self.refused(1, "set", "lift_time=146ms")
+            self.assertEqual([line.split(":")[0] for line in lines],
+                             ["error"] + [f"  --session {number(both, p.pid)}" for p in (self.engine, second)])
+            for process, value in ((self.engine, "146 ms"), (second, "147 ms")):
+                chosen = ["--session", number(both, process.pid)]
+                self.assertIn("revision 1:", self.good(*chosen, "set", f"lift_time={value}"))
+            for process, value in ((self.engine, "146 ms"), (second, "147 ms")):
+                chosen = ["--session", number(both, process.pid)]
+                self.assertEqual(self.good(*chosen, "get", "lift_time"), f"lift_time={value}\n")
+            gone = footfall("tune", "--url", self.url, "--session", "1000000000", "--timeout", "1s", "list",
+                            env=self.environment, cwd=self.folder)
+            self.assertEqual(gone.returncode, 3)
+            self.assertIn("list-engines", gone.stderr)
+        finally:
+            second.send_signal(signal.SIGINT)
+            second.communicate(timeout=20)
 
 
 class Silence(unittest.TestCase):
@@ -206,7 +250,7 @@ class Document(Live):
                     words[2:2] = ["--url", self.url]
                 done = footfall(*words[1:], cwd=self.folder, env=self.environment, stderr=subprocess.STDOUT)
                 count += 1
-                if not documents.matches(expected, done.stdout.splitlines()):
+                if not documents.matches(expected, without_session(done.stdout).splitlines()):
                     failures.append(f"{line}: {command}\nexpected\n" + "\n".join(expected) + "\ngot\n" + done.stdout)
         self.assertEqual(failures, [], "\n".join(failures))
         self.assertGreater(count, 15)

@@ -34,6 +34,9 @@ inline footfall_lcm::catalogue_t small_catalogue() {
   told.parameters = {told_parameter("gains.single.swing.kp", 3, 3, "1/s^2", 0.0, 800.0, true),
                      told_parameter("lift_time", 0, 1, "s", 0.08, 0.4, false),
                      told_parameter("goal", 1, 2, "m", -10.0, 10.0, false)};
+  told.parameters[0].axes = {"pitch", "roll", "yaw"};
+  told.fixed = {"clearance"};
+  told.fixed_reasons = {"the file says so"};
   told.values = {0.145, 0.0, 0.0, 220.0, 237.0, 400.0};
   told.events = {"start"};
   told.event_docs = {"the people let go"};

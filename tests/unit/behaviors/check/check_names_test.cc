@@ -105,7 +105,7 @@ TEST(CheckOverrides, AWrongDimensionIsOneErrorThatNamesTheOverride) {
 }
 TEST(CheckOverrides, WhatTheFileNeedsIsSaidAtTheOverride) {
   auto options = options_for_tests();
-  options.set = {{"goal", "[1 s, 2 s]"}, {"lift_time", "160 ms"}};
+  options.set = {{"goal", "[1 s, 2 s]"}, {"lift_time", "140 ms"}};
   core::Diagnostics diagnostics;
   EXPECT_FALSE(behaviors::load_behavior(balance_path(), options, diagnostics));
   const std::string text = diagnostics.to_string();

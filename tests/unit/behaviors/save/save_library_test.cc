@@ -121,7 +121,12 @@ TEST_F(SaveLibrary, AllLiveValuesOfEveryFileReadBackBitForBitAndNothingElseChang
       }
       const auto made = plan(name, values);
       ASSERT_FALSE(made.refused()) << name << ": " << made.refusals.front();
-      for (const auto& change : made.files) EXPECT_TRUE(only_places_differ(change, made)) << name;
+      // What a base has is written as an override: new lines.
+      const bool in_place =
+          std::ranges::none_of(made.places, [](const auto& place) { return place.line == 0; });
+      for (const auto& change : made.files) {
+        EXPECT_TRUE(!in_place || only_places_differ(change, made)) << name;
+      }
       ASSERT_TRUE(behaviors::write_saved(made).empty());
       const auto after = load_file(file(name));
       ASSERT_NE(after, nullptr) << name;

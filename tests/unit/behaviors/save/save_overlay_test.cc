@@ -1,4 +1,5 @@
 // Values into bases, and into files on top of a behavior.
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include "tests/unit/behaviors/save/save_test_support.h"
@@ -22,8 +23,50 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text.replace(text.find(old), old.size(), now);
 }
 
-TEST_F(SaveOverlay, AValueGoesIntoTheFileThatItCameFrom) {
-  const auto made = plan("top.yaml", {{"t", {0.15}}, {"u", {4.0}}});
+TEST_F(SaveOverlay, AValueGoesIntoTheFileThatRunsAndNotIntoItsBase) {
+  const auto made = plan("top.yaml", {{"t", {0.15}}, {"u", {4.0}}, {"v", {1.0, 5.0}}});
+  ASSERT_TRUE(behaviors::write_saved(made).empty());
+  EXPECT_EQ(get("base.yaml"), kBase);
+  EXPECT_EQ(get("top.yaml"),
+            "base: base.yaml\nparameters:\n  u: {value: 4 s}  # mine\n  t: {value: 150 ms}\n"
+            "  v: {value: [1, 5]}\n");
+  EXPECT_TRUE(made.notes.empty());
+}
+
+TEST_F(SaveOverlay, AValueThatGoesBackToTheBasesIsWrittenTooWhereItHadAnother) {
+  put("over.yaml", "base: top.yaml\nparameters:\n  t: {value: 0.2 s}\n");
+  ASSERT_TRUE(behaviors::write_saved(plan("top.yaml", {{"t", {0.145}}, {"u", {3.0}}}, "over.yaml"))
+                  .empty());
+  EXPECT_EQ(get("over.yaml"), "base: top.yaml\nparameters:\n  t: {value: 0.145 s}\n");
+}
+
+TEST_F(SaveOverlay, AFileOfALibraryIsWrittenOnlyIfItIsTheOneThatIsNamed) {
+  put("project/behaviors/library/shared.yaml", kBase);
+  put("project/gait.yaml", "base: shared\n");
+  EXPECT_THAT(refusal("project/gait.yaml", {{"t", {0.15}}}, "", true),
+              testing::HasSubstr("t: project/behaviors/library/shared.yaml belongs to a library"));
+  ASSERT_TRUE(behaviors::write_saved(plan("project/gait.yaml", {{"t", {0.15}}})).empty());
+  EXPECT_EQ(get("project/gait.yaml"), "base: shared\nparameters:\n  t: {value: 150 ms}\n");
+  EXPECT_EQ(get("project/behaviors/library/shared.yaml"), kBase);
+  ASSERT_TRUE(behaviors::write_saved(plan("project/behaviors/library/shared.yaml", {{"t", {0.15}}}))
+                  .empty());
+  EXPECT_EQ(get("project/behaviors/library/shared.yaml"), replaced(kBase, "145 ms", "150 ms"));
+}
+
+TEST_F(SaveOverlay, AnInstalledFileIsNeverWritten) {
+  put("share/behaviors/library/shared.yaml", kBase);
+  const std::string name = "share/behaviors/library/shared.yaml";
+  const std::string reason = name + " is an installed file, which is never written: --to FILE\n";
+  for (const bool into_bases : {false, true}) {
+    EXPECT_THAT(refusal(name, {{"t", {0.15}}}, "", into_bases), testing::EndsWith(reason));
+  }
+  EXPECT_THAT(refusal(name, {{"t", {0.15}}}, "share/new.yaml"),
+              testing::HasSubstr("share/new.yaml is an installed file"));
+  ASSERT_TRUE(behaviors::write_saved(plan(name, {{"t", {0.15}}}, "mine.yaml")).empty());
+}
+
+TEST_F(SaveOverlay, IntoItsBaseAValueGoesWhereItCameFrom) {
+  const auto made = plan("top.yaml", {{"t", {0.15}}, {"u", {4.0}}}, "", true);
   ASSERT_TRUE(behaviors::write_saved(made).empty());
   EXPECT_EQ(get("base.yaml"), replaced(kBase, "145 ms", "150 ms"));
   EXPECT_EQ(get("top.yaml"), "base: base.yaml\nparameters:\n  u: {value: 4 s}  # mine\n");

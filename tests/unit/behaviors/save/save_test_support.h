@@ -32,18 +32,19 @@ class SaveTest : public testing::Test {
 
   behaviors::SavePlan plan(const std::string& name,
                            const std::vector<behaviors::NamedValue>& values,
-                           const std::string& overlay = "") const {
+                           const std::string& overlay = "", bool into_bases = false) const {
     core::Diagnostics diagnostics;
-    auto plan = behaviors::plan_save(file(name), options_for_tests(), values,
-                                     overlay.empty() ? "" : file(overlay), diagnostics);
+    const behaviors::SaveTarget target{
+        overlay.empty() ? "" : file(overlay), into_bases, {file("share")}};
+    auto plan = behaviors::plan_save(file(name), options_for_tests(), values, target, diagnostics);
     EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.to_string();
     return plan;
   }
   // What refuses a plan, without the folder's name; empty: nothing.
   std::string refusal(const std::string& name, const std::vector<behaviors::NamedValue>& values,
-                      const std::string& overlay = "") const {
+                      const std::string& overlay = "", bool into_bases = false) const {
     std::string text;
-    const auto refused = plan(name, values, overlay);
+    const auto refused = plan(name, values, overlay, into_bases);
     EXPECT_TRUE(refused.files.empty() || !refused.refused());
     for (const std::string& reason : refused.refusals) text += reason + "\n";
     const std::string prefix = folder_.string() + "/";

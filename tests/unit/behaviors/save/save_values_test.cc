@@ -237,7 +237,7 @@ TEST_F(SaveValues, AnOverrideFromTheCommandLineIsNotSavedOfItself) {
   behaviors::LoadOptions options = options_for_tests();
   options.set = {{"t", "5 s"}};
   core::Diagnostics diagnostics;
-  const auto made = behaviors::plan_save(file("b.yaml"), options, {{"u", {2.0}}}, "", diagnostics);
+  const auto made = behaviors::plan_save(file("b.yaml"), options, {{"u", {2.0}}}, {}, diagnostics);
   ASSERT_EQ(made.files.size(), 1u);
   EXPECT_EQ(made.files[0].after, with_parameters("  t: 1 s\n  u: 2 s\n"));
 }
@@ -246,7 +246,7 @@ TEST_F(SaveValues, AFileThatDoesNotLoadSaysSo) {
   put("b.yaml", "behavior: 1\nmachine: {states: {a: {to: b}}}\n");
   core::Diagnostics diagnostics;
   EXPECT_TRUE(
-      behaviors::plan_save(file("b.yaml"), options_for_tests(), {{"t", {1.0}}}, "", diagnostics)
+      behaviors::plan_save(file("b.yaml"), options_for_tests(), {{"t", {1.0}}}, {}, diagnostics)
           .refused());
   EXPECT_TRUE(diagnostics.has_errors());
 }

@@ -57,9 +57,9 @@ TEST_F(EditDoor, EveryReasonIsGivenAndNothingOfABadBatchIsApplied) {
   const auto count = behavior->values.size();
   EXPECT_EQ(refusal(*behavior, batch),
             "speed: 11 m/s is out of its range, 0 m/s to 10 m/s\n"
-            "goal[1]: nan is not a finite number\n"
-            "fixed: not live; give it a range and 'live: true'\n"
-            "counted: not live, the behavior's actions set it\n"
+            "goal.y: nan is not a finite number\n"
+            "fixed: not live, because the file does not say so: give it 'live: true'\n"
+            "counted: not live, because the behavior's actions set it\n"
             "no value 99: the behavior has " +
                 std::to_string(count) +
                 "\n"

@@ -135,10 +135,11 @@ TEST(LiveCodecKeys, APacketIsWhatOthersWrite) {
   std::string digits;
   for (const std::uint8_t byte : encode(request, &key)) digits += fmt::format("{:02x}", byte);
   EXPECT_EQ(digits,
-            "2371f76a29cd1ca2000000000000000100000000000000020000000000000003"
+            "c95292c777826966000000020000000000000001000000000000000200000000"
+            "00000003"
             "0000000004616e6e003fe0000000000000ffffffffffffffff00000001000000036b7000ffffffff"
             "0000000140000000000000000000000100000003676f00"
-            "587e2c270473a0f7366dff3d2cc6848a3333b6996efcc8ec21d5a18dce846684");
+            "d85ca0428d097581f6285cf882b4347385a34157b646982a34114a5e170c464c");
 }
 
 TEST(LiveCodecKeys, TheMacIsTheLastFieldAndZeroWithoutAKey) {
