@@ -59,7 +59,7 @@ void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope
     context.error(node.mark, "empty-value", "nothing to set: expected {PARAMETER: VALUE}");
   }
   for (const core::YamlEntry& entry : node.entries) {
-    const int index = context.behavior.find_parameter(entry.key);
+    const auto [index, component] = context.behavior.find_parameter_part(entry.key);
     if (index < 0) {
       context.error(entry.key_mark, "unknown-parameter",
                     fmt::format("unknown parameter '{}'{}", entry.key,
@@ -76,7 +76,9 @@ void load_set(LoadContext& context, const core::YamlNode& node, const ValueScope
     }
     info.variable = true;
     const ParameterInfo copy = info;
-    if (!entry.value.is_sequence()) {
+    if (component >= 0) {  // `goal.y`
+      set_component(context, copy, component, entry.value, scope);
+    } else if (!entry.value.is_sequence()) {
       for (int k = 0; k < copy.size; ++k) set_component(context, copy, k, entry.value, scope);
     } else if (static_cast<int>(entry.value.items.size()) == copy.size) {
       for (int k = 0; k < copy.size; ++k) {

@@ -188,6 +188,25 @@ TEST(Loader, ParametersAreCheckedAgainstTheirRange) {
       "b.yaml:5:20: error: expected a length, got '1 s'\n"
       "b.yaml:6:3: error: expected the name of a parameter ('on' cannot be a name), got 'on'\n");
 }
+// What an expression reads by name, an action sets by the same name.
+TEST(Loader, AnActionSetsOneValueOfAVector) {
+  const auto behavior = load(R"(
+behavior: 1
+parameters: {goal: {value: [1 m, 2 m]}}
+machine: {states: {a: {on_entry: [{set: {goal.y: "= $goal.y + 3 m"}}]}}}
+)");
+  core::SignalTable signals = behavior->signals;
+  behaviors::Machine machine(*behavior, signals);
+  machine.start();
+  machine.tick(0);
+  EXPECT_EQ(machine.parameters()[0], 1.0);
+  EXPECT_EQ(machine.parameters()[1], 5.0);
+  EXPECT_NE(problems("behavior: 1\nparameters: {goal: {value: [1 m, 2 m]}}\n"
+                     "machine: {states: {a: {on_entry: [{set: {goal.w: 3 m}}]}}}\n")
+                .find("unknown parameter 'goal.w'"),
+            std::string::npos);
+}
+
 TEST(Loader, AnActionMaySetVariablesOnly) {
   EXPECT_EQ(problems("behavior: 1\nparameters: {a: {value: 1, range: [0, 2], live: true}, b: 1}\n"
                      "machine: {on_entry: [{set: {a: 1}}, {set: {c: 1}}]}\n"),
