@@ -208,12 +208,21 @@ void add_check_command(CLI::App& app, int& exit_code) {
       ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
   command->add_flag("--json", options->json, "One JSON object with every problem");
-  command->add_option("--stdin-name", options->stdin_name,
-                      "File name for - in messages; `base:` and `robot:` are searched beside it");
+  auto* name = command->add_option(
+      "--stdin-name", options->stdin_name,
+      "File name for - in messages; `base:` and `robot:` are searched beside it");
   command->footer(
       "Exit codes: 0 clean, 1 warnings with --strict, 2 errors.\n"
       "Example: footfall check --strict behaviors/library/balance.yaml robots/hume/robot.yaml");
-  command->callback([options, &exit_code] { exit_code = check(*options); });
+  command->callback([options, name, &exit_code] {
+    const auto work = [&] {
+      if (name->count() > 0 && std::ranges::find(options->files, "-") == options->files.end()) {
+        throw InputError("--stdin-name: error: it is of `-`, which is not among the files");
+      }
+      return check(*options);
+    };
+    exit_code = guarded(work, kMachineFailed);
+  });
 }
 
 }  // namespace footfall::apps

@@ -91,10 +91,9 @@ std::string derived_text(const NewOptions& options, const fs::path& path) {
       core::load_yaml_with_base(find_behavior_file(options.base), diagnostics, nullptr,
                                 behaviors::library_folders(search_path()));
   if (diagnostics.has_errors()) {
-    print_diagnostics(diagnostics);
-    throw InputError(fmt::format("--base {}: expected a behavior's file or a name out of {}",
-                                 options.base,
-                                 fmt::join(behaviors::library_folders(search_path()), ", ")));
+    core::Diagnostics there;
+    print_diagnostics(behavior_is_there(options.base, there) ? diagnostics : there);
+    throw InputError("");
   }
   std::string text = fmt::format("base: {}\n", base_as_written(options, path));
   if (!options.robot.empty()) text += fmt::format("robot: {}\n", options.robot);

@@ -12,6 +12,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/time_option.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/text/json_text.h"
 #include "core/text/printable.h"
@@ -27,14 +28,6 @@ struct EventsOptions {
   std::string from, to;  // as written
   bool json = false;
 };
-
-double read_time(const std::string& text, const char* option, double otherwise) {
-  if (text.empty()) return otherwise;
-  const auto quantity = core::parse_quantity(text);
-  if (quantity && (quantity->bare || quantity->dimension == core::kTime)) return quantity->value;
-  throw std::runtime_error(
-      fmt::format("{}: error: expected a time such as 2.5s, got '{}'", option, text));
-}
 
 // A kind that no log can contain is an error; one that only this log lacks is not.
 void check_kinds(const std::vector<std::string>& kinds, const lab::Log& log) {
@@ -56,6 +49,20 @@ std::string text_of(const lab::LoggedEvent& event) {
                      name, detail.empty() ? "" : "  ", detail.empty() ? "" : between, detail);
 }
 
+// `a = 1, b[1] = 2 over 150 ticks`: {"values": {"a": 1, "b[1]": 2}}.
+void add_values(const std::string& detail, nlohmann::ordered_json& line) {
+  std::istringstream text(detail);
+  text.imbue(std::locale::classic());
+  nlohmann::ordered_json values = nlohmann::ordered_json::object();
+  std::string name, equals;
+  double value = 0.0;
+  while (text >> name >> equals && equals == "=" && text >> value) {
+    values[name] = value;
+    if (text.peek() == ',') text.get();
+  }
+  if (!values.empty()) line["values"] = values;
+}
+
 // What the detail of some kinds says, as values: of a fault how often, where, how much; of a step
 // its clearance and flight; of a plan the foothold.
 void add_fields(const lab::LoggedEvent& event, nlohmann::ordered_json& line) {
@@ -74,6 +81,13 @@ void add_fields(const lab::LoggedEvent& event, nlohmann::ordered_json& line) {
     if (text >> word >> x >> comma >> flight >> y && word == "clearance" && flight == "flight") {
       line.update({{"clearance_m", x}, {"flight_s", y}});
     }
+  } else if (event.kind == "push") {
+    std::string newton, second;
+    if (text >> x >> newton >> y >> second >> z && newton == "N,") {
+      line.update({{"force_N", x}, {"duration_s", y}, {"direction_rad", z}});
+    }
+  } else if (event.kind == "edit") {
+    add_values(event.detail, line);
   } else if (event.kind == "plan" && text >> x >> y >> z) {
     line["target_m"] = {x, y, z};
   }

@@ -8,6 +8,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/time_option.h"
 #include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "core/units/units.h"
@@ -21,16 +22,6 @@ struct ExportArguments {
   std::vector<std::string> signals;
   bool csv = false, events = false, all = false;
 };
-
-double time_of(const std::string& text, const char* option, double otherwise) {
-  if (text.empty()) return otherwise;
-  const auto quantity = core::parse_quantity(text);
-  if (!quantity || !(quantity->bare || quantity->dimension == core::kTime)) {
-    throw std::runtime_error(
-        fmt::format("{}: error: expected a time such as 2.5s, got '{}'", option, text));
-  }
-  return quantity->value;
-}
 
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -108,8 +99,8 @@ std::string events_csv(const lab::Log& log, double from, double to) {
 }
 
 int run_export(const ExportArguments& arguments) {
-  const double from = time_of(arguments.from, "--from", 0.0);
-  const double to = time_of(arguments.to, "--to", 1e12);
+  const double from = read_time(arguments.from, "--from", 0.0);
+  const double to = read_time(arguments.to, "--to", 1e12);
   const std::vector<std::string> paths = run_logs(arguments.log);
   std::string text;
   for (const std::string& path : paths) {
@@ -144,10 +135,14 @@ void add_export_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("export", "A log as CSV: signals, or events");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   command->add_flag("--csv", arguments->csv, "CSV (the only format so far)");
-  command->add_option("--signals", arguments->signals, "Names or globs, e.g. \"com.pos.*\"")
-      ->delimiter(',');
-  command->add_flag("--events", arguments->events, "Events instead of signals");
-  command->add_flag("--all", arguments->all, "All rows, not only the evenly spaced ones");
+  auto* signals =
+      command->add_option("--signals", arguments->signals, "Names or globs, e.g. \"com.pos.*\"");
+  signals->delimiter(',');
+  auto* all =
+      command->add_flag("--all", arguments->all, "All rows, not only the evenly spaced ones");
+  command->add_flag("--events", arguments->events, "Events instead of signals")
+      ->excludes(signals)
+      ->excludes(all);
   command->add_option("--from", arguments->from, "Begins at this time, e.g. 2s");
   command->add_option("--to", arguments->to, "Ends at this time");
   command->add_option("-o,--output", arguments->out, "Output file, instead of stdout");

@@ -14,6 +14,7 @@
 #include "apps/log/report_film.h"
 #include "apps/shared/external_program.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/time_option.h"
 #include "core/units/units.h"
 #include "lab/log/reader.h"
 #include "lab/log/window.h"
@@ -30,22 +31,11 @@ std::string text_beside(const std::filesystem::path& log, const char* name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Parses a time option. Throws std::runtime_error.
-double time_of(const char* option, const std::string& text, double otherwise) {
-  if (text.empty()) return otherwise;
-  const auto quantity = core::parse_quantity(text);
-  if (!quantity || !(quantity->bare || quantity->dimension == core::kTime)) {
-    throw std::runtime_error(std::string(option) + ": expected a time such as 12.3s, got '" + text +
-                             "'");
-  }
-  return quantity->value;
-}
-
 // The requested part of a log.
 lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
-  const double from = time_of("--from", arguments.from, -kEver);
-  const double to = time_of("--to", arguments.to, kEver);
+  const double from = read_time(arguments.from, "--from", -kEver);
+  const double to = read_time(arguments.to, "--to", kEver);
   if (arguments.from.empty() && arguments.to.empty()) return log;
   lab::Log part = lab::log_window(log, from, to);
   if (part.rows() == 0) {

@@ -4,11 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <memory>
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/time_option.h"
 #include "core/units/units.h"
 #include "lab/replay/why.h"
 
@@ -23,23 +25,28 @@ struct WhyArguments {
 std::int64_t tick_asked(const WhyArguments& arguments, const lab::Log& log) {
   if (arguments.tick >= 0) return arguments.tick;
   if (arguments.at.empty()) return lab::telling_tick(log);
-  const auto quantity = core::parse_quantity(arguments.at);
-  const bool time = quantity && (quantity->bare || quantity->dimension == core::kTime);
-  if (!time || !(quantity->value >= 0.0 && quantity->value < 1e6)) {
-    throw std::runtime_error("--at: error: expected a time such as 12.3s, got '" + arguments.at +
-                             "'");
+  const double time = read_time(arguments.at, "--at");
+  if (!(time >= 0.0 && time < 1e6)) {
+    throw std::runtime_error("--at: error: expected a time in the run, got '" + arguments.at + "'");
   }
-  const std::int64_t tick = std::llround(quantity->value * static_cast<double>(log.rate_mhz) / 1e3);
-  // A summary gives the time after the last tick, rounded to milliseconds.
+  const double rate = static_cast<double>(log.rate_mhz) / 1e3;
+  const std::int64_t tick = std::llround(time * rate);
+  // A summary gives the time after the last tick, rounded to hundredths of a second.
   const std::int64_t end = log.inputs.first_tick + log.inputs.ticks();
-  const auto rounding = static_cast<std::int64_t>(1e-3 * static_cast<double>(log.rate_mhz) / 1e3);
+  const auto rounding = static_cast<std::int64_t>(std::ceil(5e-3 * rate));
   return tick >= end && tick <= end + rounding ? end - 1 : tick;
 }
 
 int run_why(const WhyArguments& arguments) {
-  const lab::Log log = read_whole_log(arguments.log);
-  lab::Replay replay(log);
-  fmt::print("{}", lab::explain_tick(replay, tick_asked(arguments, log)));
+  std::deque<lab::Log> logs;  // of the run, then of each reload; a replay keeps referring to them
+  for (const std::string& path : run_logs(arguments.log)) logs.push_back(read_whole_log(path));
+  const std::int64_t tick = tick_asked(arguments, logs.back());
+  lab::Replay replay(logs.front());
+  for (std::size_t k = 1; k < logs.size() && tick >= replay.end(); ++k) {
+    while (replay.next() < replay.end()) replay.tick({});
+    replay.go_on(logs[k]);
+  }
+  fmt::print("{}", lab::explain_tick(replay, tick));
   return kGood;
 }
 

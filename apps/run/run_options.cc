@@ -5,8 +5,7 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "core/diagnostics/quantity_hint.h"
-#include "core/units/units.h"
+#include "apps/shared/time_option.h"
 
 namespace footfall::apps {
 
@@ -56,13 +55,16 @@ void add_run_options(CLI::App& command, RunOptions& o) {
   command.add_option("--goal", o.goal, "x,y in m: target position");
   command.add_option("--goal-velocity", o.goal_velocity,
                      "vx,vy in m/s: the goal moves from the start on");
-  command.add_option("--log", o.log,
-                     "Folder for log.mcap, summary.json, timing.json and the report (default: a "
-                     "new one in out/run; out/run/latest leads to it)");
-  command.add_flag("--no-log", o.no_log, "Writes no files");
+  CLI::Option* const log = command.add_option(
+      "--log", o.log,
+      "Folder for log.mcap, summary.json, timing.json and the report (default: a "
+      "new one in out/run; out/run/latest leads to it)");
+  CLI::Option* const no_log = command.add_flag("--no-log", o.no_log, "Writes no files");
+  no_log->excludes(log);
   command.add_flag("--no-report", o.no_report, "No report page beside the log");
   command.add_option("--film", o.film, "Writes the run as MP4 (needs ffmpeg)");
-  command.add_flag("--log-all", o.log_all, "Logs the derived signals of every tick");
+  command.add_flag("--log-all", o.log_all, "Logs the derived signals of every tick")
+      ->excludes(no_log);
   command
       .add_option("--log-every", o.log_every,
                   "Logs the derived signals of every N-th tick, and of all ticks around "
@@ -86,13 +88,10 @@ void finish_options(RunOptions& o) {
     if (o.steps > 0) o.duration = 20.0 + static_cast<double>(o.steps);
     return;
   }
-  const auto quantity = core::parse_quantity(o.duration_text);
-  const bool time = quantity && (quantity->bare || quantity->dimension == core::kTime);
-  if (!time || !(quantity->value > 0.0)) {
-    throw std::runtime_error("--for: error: expected a time such as 20s, got '" + o.duration_text +
-                             "'" + core::quantity_hint(o.duration_text, core::kTime));
-  }
-  o.duration = quantity->value;
+  o.duration = read_time(o.duration_text, "--for");
+  if (o.duration > 0.0) return;
+  throw std::runtime_error("--for: error: expected a time above 0 s, got '" + o.duration_text +
+                           "'");
 }
 
 }  // namespace footfall::apps

@@ -129,7 +129,8 @@ std::function<void(double, const std::string&)> said_printer(const RunOptions& o
     if (++said > kMost + 1) return;
     if (status) std::fputs("\r\033[K", stderr);
     if (said <= kMost) {
-      fmt::print(stream, "  {:8.3f} s   {}\n", time, core::on_one_line(text));
+      fmt::print(stream, "  {:8.3f} s   {}\n", time,
+                 core::on_one_line(core::printable_lines(text)));
     } else {
       fmt::print(stream, "  ... and more{}\n",
                  logged ? "; all of it: footfall events LOG --kind log" : "");

@@ -15,6 +15,7 @@
 #include "core/diagnostics/did_you_mean.h"
 #include "core/diagnostics/quantity_hint.h"
 #include "core/process/machine_error.h"
+#include "core/text/printable.h"
 #include "core/text/search_folders.h"
 #include "sim/world/description.h"
 
@@ -101,7 +102,7 @@ int guarded(const std::function<int()>& work, int otherwise) {
 }
 
 void print_diagnostics(const core::Diagnostics& diagnostics) {
-  std::string text = diagnostics.to_string();
+  std::string text = core::printable_lines(diagnostics.to_string());
   if (::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr) {
     for (const auto& [word, colour] : {std::pair(" error: ", 31), std::pair(" warning: ", 33)}) {
       const std::string coloured = fmt::format(

@@ -42,7 +42,9 @@ std::string unknown_word(const CLI::App& app, const std::vector<std::string>& wo
     if (after_command >= words.size()) return {};
     const std::string& word = words[after_command];
     if (word.starts_with('-') || child(app, word) != nullptr) return {};
-    if (word == "help") return "unknown command 'help' (did you mean '--help'?)";
+    if (word == "help" || word == "version") {
+      return fmt::format("unknown command '{0}' (did you mean '--{0}'?)", word);
+    }
     return fmt::format("unknown command '{}'{}", word, core::did_you_mean_or_list(word, commands));
   }
   const auto options = option_names(app);
@@ -53,9 +55,9 @@ std::string unknown_word(const CLI::App& app, const std::vector<std::string>& wo
     if (!option || std::ranges::find(options, word) != options.end()) continue;
     if (word[1] != '-' && std::ranges::find(options, word.substr(0, 2)) != options.end()) continue;
     // Of one letter all are near; most look for where the output goes.
-    const std::string hint = word == "-o" ? " (see --log, --out)" : "";
+    const std::string hint = word == "-o" || word == "--output" ? " (see --log, --out)" : "";
     return fmt::format("unknown option '{}'{}", word,
-                       word[1] == '-' ? core::did_you_mean(word, options) : hint);
+                       word[1] == '-' && hint.empty() ? core::did_you_mean(word, options) : hint);
   }
   return {};
 }

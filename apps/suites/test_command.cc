@@ -11,6 +11,7 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "apps/shared/time_option.h"
 #include "core/process/file_lock.h"
 #include "core/process/stop_signals.h"
 #include "core/text/json_text.h"
@@ -64,12 +65,9 @@ void read_shard(const std::string& text, lab::SuiteSelection& selection) {
 
 double read_timeout(const std::string& text) {
   if (text.empty()) return 0.0;
-  const auto quantity = core::parse_quantity(text);
-  const bool time = quantity && (quantity->bare || quantity->dimension == core::kTime);
-  if (!time || !(quantity->value > 0.0)) {
-    throw InputError("--timeout: error: expected a time such as 60s, got '" + text + "'");
-  }
-  return quantity->value;
+  const double time = read_time(text, "--timeout");
+  if (time > 0.0) return time;
+  throw InputError("--timeout: error: expected a time above 0 s, got '" + text + "'");
 }
 
 std::string session_file(const TestOptions& options) { return options.out + "/session.json"; }
@@ -339,7 +337,7 @@ void add_options(CLI::App& command, TestOptions& o) {
       ->capture_default_str();
   command.add_flag("--bless", o.bless,
                    "Makes the traces of these runs the golden ones: shows what changes, then asks");
-  command.add_flag("--yes", o.yes, "With --bless: does not ask");
+  command.add_flag("--yes", o.yes, "With --bless: does not ask")->needs("--bless");
   command.add_flag("--keep", o.keep, "Keeps the logs of runs that passed, too");
   command.add_flag("--no-report", o.no_report, "No report pages of failures");
   command.add_option("--junit", o.junit, "Writes the result as JUnit XML");

@@ -66,9 +66,21 @@ std::optional<core::Dimension> written_dimension(const core::YamlNode& node) {
   return std::nullopt;
 }
 
+// `goal.x`: one value of a parameter that is a list; nullptr if there is none.
+core::YamlNode* component(core::YamlNode& parameters, const std::string& name) {
+  constexpr std::string_view kAxes = "xyz";
+  const std::vector<std::string> parts = core::split_dots(name);
+  core::YamlNode* list = parts.size() == 2 ? child(parameters, parts[0]) : nullptr;
+  if (list != nullptr && list->is_map()) list = child(*list, "value");
+  if (list == nullptr || !list->is_sequence() || parts[1].size() != 1) return nullptr;
+  const std::size_t index = kAxes.find(parts[1]);
+  return index < list->items.size() ? &list->items[index] : nullptr;
+}
+
 void set_parameter(LoadContext& context, const std::string& name, core::YamlNode value) {
   core::YamlNode* parameters = child(context.root, "parameters");
   core::YamlNode* parameter = parameters == nullptr ? nullptr : child(*parameters, name);
+  if (parameter == nullptr && parameters != nullptr) parameter = component(*parameters, name);
   if (parameter == nullptr) {
     std::vector<std::string> known = {"gains", "planners"};
     if (parameters != nullptr) known = keys_of(*parameters);

@@ -41,15 +41,23 @@ void count_instructions(lua_State* lua, lua_Debug*) {
   luaL_error(lua, "stopped: it ran longer than its instructions allow");
 }
 
-// Parses `script:12: text`, the format of Lua's messages.
+constexpr std::string_view kNoName = "script";  // of a text without a file
+
+// Parses `NAME:12: text`, the format of Lua's messages.
 ScriptError split_message(const char* message) {
   ScriptError error{0, message == nullptr ? "unknown error" : message};
-  constexpr std::string_view kName = "script:";
-  if (!error.text.starts_with(kName)) return error;
-  char* end = nullptr;
-  error.line = static_cast<int>(std::strtol(error.text.c_str() + kName.size(), &end, 10));
-  const auto skip = static_cast<std::size_t>(end - error.text.c_str());
-  error.text.erase(0, std::min(error.text.size(), skip + 2));
+  for (std::size_t colon = error.text.find(':'); colon != std::string::npos;
+       colon = error.text.find(':', colon + 1)) {
+    char* end = nullptr;
+    const long line = std::strtol(error.text.c_str() + colon + 1, &end, 10);
+    if (line <= 0 || *end != ':') continue;
+    error.line = static_cast<int>(line);
+    error.file = error.text.substr(0, colon);
+    if (error.file == kNoName) error.file.clear();
+    const auto skip = static_cast<std::size_t>(end - error.text.c_str());
+    error.text.erase(0, std::min(error.text.size(), skip + 2));
+    break;
+  }
   return error;
 }
 
@@ -125,7 +133,10 @@ struct Script::Impl {
       out.events.insert(out.events.end(), answer.events.begin(), answer.events.end());
       out.edits.insert(out.edits.end(), answer.edits.begin(), answer.edits.end());
     } else {
-      const std::string line = error.line > 0 ? "line " + std::to_string(error.line) + ": " : "";
+      const std::string number = std::to_string(error.line);
+      const std::string line = error.line <= 0      ? ""
+                               : error.file.empty() ? "line " + number + ": "
+                                                    : error.file + ", line " + number + ": ";
       out.messages.push_back("script error: " + line + error.text);
     }
     return good;
@@ -165,12 +176,13 @@ bool Script::stopped() const noexcept { return impl_->state.stopped; }
 
 const ScriptSettings& Script::settings() const noexcept { return impl_->state.settings; }
 
-bool Script::load(const std::string& text, ScriptError& error) {
+bool Script::load(const std::string& text, ScriptError& error, const std::string& name) {
   if (stopped()) return false;
   lua_State* lua = impl_->state.lua;
   // "t": text only; malformed byte code could crash the interpreter.
   const std::string_view code = without_head(text);
-  if (luaL_loadbufferx(lua, code.data(), code.size(), "=script", "t") != LUA_OK) {
+  const std::string chunk = "=" + (name.empty() ? std::string(kNoName) : name);
+  if (luaL_loadbufferx(lua, code.data(), code.size(), chunk.c_str(), "t") != LUA_OK) {
     error = split_message(lua_tostring(lua, -1));
     lua_settop(lua, 0);
     return false;

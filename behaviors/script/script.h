@@ -59,6 +59,7 @@ struct ScriptAnswer {
 struct ScriptError {
   int line = 0;
   std::string text;
+  std::string file = {};  // as load() was told; empty: it was not
 };
 
 class Script {
@@ -70,7 +71,8 @@ class Script {
   Script& operator=(const Script&) = delete;
 
   // Runs a file's text, which defines functions and handlers. False and the reason on failure.
-  bool load(const std::string& text, ScriptError& error);
+  // `name`: of the file, for messages.
+  bool load(const std::string& text, ScriptError& error, const std::string& name = {});
   // Global functions defined by the files, sorted, and the patterns of footfall.on in order.
   std::vector<std::string> functions() const;
   const std::vector<std::string>& patterns() const;

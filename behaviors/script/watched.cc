@@ -20,13 +20,15 @@ core::WatchLimits watch_limits(const ScriptLimits& call) {
 }
 
 bool load_watched(const std::shared_ptr<Script>& script, const std::string& text,
-                  ScriptError& error) {
+                  ScriptError& error, const std::string& name) {
   struct Result {
     bool good = false;
     ScriptError error;
   };
   const auto result = std::make_shared<Result>();
-  const auto work = [script, text, result] { result->good = script->load(text, result->error); };
+  const auto work = [script, text, name, result] {
+    result->good = script->load(text, result->error, name);
+  };
   if (!core::run_watched(work, watch_limits(script->settings().limits))) {
     script->stop();
     error = {0, kGaveUp};

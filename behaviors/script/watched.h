@@ -16,7 +16,7 @@ core::WatchLimits watch_limits(const ScriptLimits& limits);
 // As Script::load() and Script::call(), on a thread of its own. If nothing comes back within the
 // limits the script is stopped: false, and the reason says so.
 bool load_watched(const std::shared_ptr<Script>& script, const std::string& text,
-                  ScriptError& error);
+                  ScriptError& error, const std::string& name = {});
 bool call_watched(const std::shared_ptr<Script>& script, const std::string& function,
                   const ScriptView& view, ScriptAnswer& answer);
 

@@ -9,6 +9,14 @@ namespace footfall::core {
 
 namespace fs = std::filesystem;
 
+bool is_readable_source(const std::string& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return true;
+  const bool opened =
+      path.starts_with("/dev/fd/") || path.starts_with("/proc/self/fd/") || path == "/dev/stdin";
+  return opened && fs::exists(path, error) && !fs::is_directory(path, error);
+}
+
 std::vector<std::string> search_from(const std::string& file,
                                      const std::vector<std::string>& search) {
   std::vector<std::string> folders;

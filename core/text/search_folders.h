@@ -6,6 +6,10 @@
 
 namespace footfall::core {
 
+// Whether the path is a file, or a descriptor that the shell has opened (`<(COMMAND)`, /dev/stdin).
+// A pipe of another name could have nobody who writes to it, and would be waited for without end.
+bool is_readable_source(const std::string& path);
+
 // The file's folder and those above it, then `search`: a project is found from wherever one works.
 std::vector<std::string> search_from(const std::string& file,
                                      const std::vector<std::string>& search);

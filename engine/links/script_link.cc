@@ -2,6 +2,7 @@
 #include "engine/links/script_link.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -18,7 +19,9 @@ ScriptLink::Side::Side(const behaviors::Behavior& of, const behaviors::ScriptSet
   for (const auto& call : of.calls) calls.push_back(call.name);
   for (const behaviors::ScriptFile& file : of.scripts) {
     behaviors::ScriptError error;
-    if (behaviors::load_watched(script, file.text, error)) continue;
+    if (behaviors::load_watched(script, file.text, error,
+                                std::filesystem::path(file.path).filename().string()))
+      continue;
     throw std::runtime_error(file.path + ":" + std::to_string(error.line) +
                              ": error: " + error.text);
   }

@@ -2,6 +2,7 @@
 #include "lab/judge/lua.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "core/index.h"
 
@@ -23,7 +24,8 @@ ScenarioLua::ScenarioLua(const ScenarioDescription& scenario, engine::ControlLoo
       active_(loop.behavior().states.size()) {
   for (const behaviors::ScriptFile& file : scenario.scripts) {
     behaviors::ScriptError ignored;  // the loader has told
-    behaviors::load_watched(script_, file.text, ignored);
+    behaviors::load_watched(script_, file.text, ignored,
+                            std::filesystem::path(file.path).filename().string());
   }
 }
 

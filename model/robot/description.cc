@@ -6,6 +6,8 @@
 #include <limits>
 #include <string_view>
 
+#include "core/text/search_folders.h"
+
 namespace footfall::model {
 
 namespace {
@@ -38,7 +40,7 @@ std::string find_robot_file(const std::string& name, const std::vector<std::stri
   namespace fs = std::filesystem;
   std::error_code error;
   if (name.empty()) return {};
-  if (fs::is_regular_file(name, error)) return name;
+  if (core::is_readable_source(name)) return name;
   for (const std::string& folder : search) {
     const fs::path path = fs::path(folder) / "robots" / name / "robot.yaml";
     if (fs::is_regular_file(path, error)) return path.string();

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text/search_folders.h"
 #include "core/yaml/layers.h"
 #include "core/yaml/value_reader.h"
 #include "sim/world/keys.h"
@@ -333,7 +334,7 @@ std::string find_world_file(const std::string& name, const std::vector<std::stri
   namespace fs = std::filesystem;
   std::error_code error;
   if (name.empty()) return {};
-  if (fs::is_regular_file(name, error)) return name;
+  if (core::is_readable_source(name)) return name;
   for (const std::string& folder : search) {
     const fs::path path = fs::path(folder) / "sim" / "worlds" / (name + ".yaml");
     if (fs::is_regular_file(path, error)) return path.string();

@@ -86,7 +86,9 @@ void run_script_files(const std::vector<ScriptFile>& files, const std::shared_pt
                       core::Diagnostics& diagnostics) {
   for (const ScriptFile& file : files) {
     ScriptError problem;
-    if (load_watched(script, file.text, problem)) continue;
+    if (load_watched(script, file.text, problem,
+                     std::filesystem::path(file.path).filename().string()))
+      continue;
     const int index = diagnostics.add_file(file.path);
     diagnostics.error({index, problem.line, problem.line > 0 ? 1 : 0}, "script", problem.text);
   }
