@@ -40,14 +40,14 @@ ParameterPart Behavior::find_parameter_part(std::string_view text) const {
   const int parameter = find_parameter(text.substr(0, end));
   if (parameter < 0) return {};
   const ParameterInfo& info = parameters[static_cast<std::size_t>(parameter)];
-  const std::string_view name = text.substr(end + 1);
+  const std::string_view part = text.substr(end + 1);
   int component = -1;
   if (numbered) {
-    const char* const last = name.data() + name.size() - 1;
-    const auto [stop, error] = std::from_chars(name.data(), last, component);
+    const char* const last = part.data() + part.size() - 1;
+    const auto [stop, error] = std::from_chars(part.data(), last, component);
     if (error != std::errc() || stop != last || component >= info.size) component = -1;
   } else {
-    component = component_of(name, info);
+    component = component_of(part, info);
   }
   return component < 0 ? ParameterPart{} : ParameterPart{parameter, component};
 }

@@ -70,9 +70,19 @@ struct Expression {
   bool bare = false;      // numbers without unit only: adopted the expected dimension
   bool constant = false;  // has the same value in every tick
 
-  enum class Form : std::uint8_t { constant, parameter, signal, step, program };
+  // What is most frequent is computed in line: the call of a step's function costs more than it.
+  enum class Form : std::uint8_t {
+    constant,
+    parameter,
+    signal,
+    state_time,  // `t` of a state
+    scaled,      // a parameter times a constant
+    square,      // of a signal
+    step,
+    program,
+  };
   Form form = Form::program;
-  int index = 0;       // parameter slot or signal index
+  int index = 0;       // parameter slot, signal index or state
   int program = 0;     // its first step in the pool's program
   double value = 0.0;  // of the constant
 };
@@ -112,6 +122,15 @@ struct EvaluationContext {
 inline double evaluate(const ExpressionPool& pool, int expression,
                        const EvaluationContext& context) noexcept {
   const Expression& e = pool[expression];
+  // Not in the switch, whose jump through a table costs as much as they do.
+  if (e.form == Expression::Form::state_time) {
+    return static_cast<double>(context.tick - context.entry_ticks[e.index]) * context.period;
+  }
+  if (e.form == Expression::Form::scaled) return e.value * context.parameters[e.index];
+  if (e.form == Expression::Form::square) {
+    const double signal = context.signals[e.index];
+    return signal * signal;
+  }
   switch (e.form) {
     case Expression::Form::constant:
       return e.value;

@@ -294,6 +294,40 @@ class Lowering {
 
 }  // namespace
 
+namespace {
+
+bool is_product_of_parameter(const Instruction* code, int count) {
+  if (count != 3 || code[2].op != Op::multiply) return false;
+  return (code[0].op == Op::constant && code[1].op == Op::parameter) ||
+         (code[0].op == Op::parameter && code[1].op == Op::constant);
+}
+
+bool is_square_of_signal(const Instruction* code, int count) {
+  return count == 3 && code[0].op == Op::signal && code[1].op == Op::constant &&
+         code[1].value == 2.0 && code[2].op == Op::power;
+}
+
+// The forms beside `step` of expressions that are one step; false: it has none.
+bool compute_in_line(const Instruction* code, int count, Expression& expression) {
+  if (count == 1 && code[0].op == Op::state_time) {
+    expression.form = Expression::Form::state_time;
+    expression.index = code[0].index;
+  } else if (is_product_of_parameter(code, count)) {
+    const bool constant_first = code[0].op == Op::constant;
+    expression.form = Expression::Form::scaled;
+    expression.value = code[constant_first ? 0 : 1].value;
+    expression.index = code[constant_first ? 1 : 0].index;
+  } else if (is_square_of_signal(code, count)) {
+    expression.form = Expression::Form::square;
+    expression.index = code[0].index;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 void lower_expression(const Instruction* code, int count, std::vector<Step>& program,
                       Expression& expression) {
   const std::size_t first = program.size();
@@ -313,7 +347,9 @@ void lower_expression(const Instruction* code, int count, std::vector<Step>& pro
     expression.index = static_cast<int>(value.operand.index);
   } else {
     lowering.finish(value);
-    if (program.size() == first + 2) expression.form = Expression::Form::step;
+    if (!compute_in_line(code, count, expression) && program.size() == first + 2) {
+      expression.form = Expression::Form::step;
+    }
     return;
   }
   program.resize(first);  // no steps needed
