@@ -16,7 +16,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 from rows import FOOTFALL, PROCESSES, ROOT, finish, progress, progress_done
 
-DATA = json.loads((ROOT / "tests" / "silent" / "neighbours.json").read_text())
+# @SOURCE@ in the data is the root of this tree.
+DATA = json.loads((ROOT / "tests" / "silent" / "neighbours.json").read_text().replace("@SOURCE@", str(ROOT)))
 PROGRAM = str(Path(FOOTFALL).resolve())
 
 
