@@ -15,11 +15,13 @@
 #include "apps/shared/external_program.h"
 #include "apps/shared/log_argument.h"
 #include "apps/shared/time_option.h"
+#include "core/text/json_text.h"
 #include "core/units/units.h"
 #include "lab/log/reader.h"
 #include "lab/log/window.h"
 #include "lab/report/report.h"
 #include "lab/report/states.h"
+#include "lab/report/strip.h"
 #include "lab/run/reload.h"
 
 namespace footfall::apps {
@@ -82,18 +84,17 @@ void write_comparison(const ReportArguments& arguments, std::FILE* stream) {
   std::vector<lab::Log> logs;
   std::vector<lab::ComparedRun> runs;
   for (const std::string& name : names) {
-    lab::Log log = read_whole_log(name);
-    runs.emplace_back().summary_json = text_beside(log_path(name), "summary.json");
-    if (!logs.empty()) {
-      runs.back().parting = lab::compare_logs(logs.front(), log);
-      log.inputs = {};
-      lab::keep_even_rows(log);
-    }
-    logs.push_back(std::move(log));
+    logs.push_back(read_whole_log(name));
+    lab::ComparedRun& run = runs.emplace_back();
+    if (logs.size() == 1) continue;
+    run.parting = lab::compare_logs(logs.front(), logs.back());
+    logs.back().inputs = {};
   }
-  lab::keep_even_rows(logs.front());
   for (std::size_t k = 0; k < logs.size(); ++k) {
     logs[k] = part_of(std::move(logs[k]), arguments);
+    runs[k].summary_json = core::json_text(
+        lab::page_summary(logs[k], text_beside(log_path(names[k]), "summary.json")));
+    lab::keep_even_rows(logs[k]);
     runs[k].log = &logs[k];
   }
   const std::string out =
@@ -117,13 +118,16 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
     lab::Log log = part_of(lab::read_log(path.string(), {.all_rows = true}), arguments);
     lab::ReportOptions options;
     draw_states(log, options);
+    options.summary_json =
+        core::json_text(lab::page_summary(log, text_beside(path, "summary.json")));
     lab::keep_even_rows(log);
-    options.summary_json = text_beside(path, "summary.json");
     options.timing_json = text_beside(path, "timing.json");
     options.static_plots = arguments.static_plots;
     if (!arguments.no_strip) {
       try {
-        const sim::Image strip = film_strip(log);
+        const lab::StripMoments moments = lab::strip_moments(log);
+        const sim::Image strip = film_strip(log, moments.times);
+        options.strip_caption = moments.caption;
         options.strip_png = sim::encode_png(strip);
         if (!arguments.strip.empty()) sim::write_png(strip, arguments.strip);
       } catch (const std::runtime_error& error) {

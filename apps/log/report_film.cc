@@ -9,14 +9,13 @@
 #include <stdexcept>
 
 #include "lab/report/data.h"
+#include "lab/report/strip.h"
 #include "sim/view/video.h"
 
 namespace footfall::apps {
 namespace {
 
-constexpr int kStripPictures = 16, kStripColumns = 8;
 constexpr int kPictureWidth = 240, kPictureHeight = 340;
-constexpr double kStripSteps = 4.0;  // number of steps shown in the strip
 constexpr int kFilmWidth = 480, kFilmHeight = 600;
 constexpr double kFilmRate = 30.0;
 
@@ -50,16 +49,6 @@ std::string short_state(const std::string& path) {
 std::size_t row_at(const lab::Log& log, double time) {
   const auto found = std::ranges::lower_bound(log.time, time);
   return std::min(static_cast<std::size_t>(found - log.time.begin()), log.rows() - 1);
-}
-
-// Beginning of the last steps, s.
-double strip_begin(const lab::Log& log) {
-  const auto* steps = log.values("steps");
-  if (steps == nullptr || steps->back() < static_cast<float>(kStripSteps)) return log.time.front();
-  const auto first = static_cast<float>(static_cast<double>(steps->back()) - kStripSteps);
-  std::size_t row = log.rows() - 1;
-  while (row > 0 && (*steps)[row - 1] > first - 0.5F) --row;
-  return log.time[row];
 }
 
 }  // namespace
@@ -102,16 +91,14 @@ sim::FilmFrame LoggedPose::frame(std::size_t row) const {
   return frame;
 }
 
-sim::Image film_strip(const lab::Log& log) {
+sim::Image film_strip(const lab::Log& log, std::span<const double> times) {
   sim::FilmRenderer renderer(film_model(log), kPictureWidth, kPictureHeight);
   const LoggedPose pose(log, renderer);
-  const double begin = strip_begin(log), end = log.time.back();
   std::vector<sim::Image> pictures;
-  for (int i = 0; i < kStripPictures; ++i) {
-    const double part = static_cast<double>(i) / (kStripPictures - 1);
-    pictures.push_back(renderer.render(pose.frame(row_at(log, begin + part * (end - begin)))));
+  for (const double time : times) {
+    pictures.push_back(renderer.render(pose.frame(row_at(log, time))));
   }
-  return sim::film_strip(pictures, kStripColumns);
+  return sim::film_strip(pictures, lab::kStripColumns);
 }
 
 void write_film(const lab::Log& log, const std::string& path) {

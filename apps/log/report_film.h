@@ -1,6 +1,7 @@
 // Pictures of a run from its log: logged joint positions on the robot model of the run.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,9 @@ class LoggedPose {
   std::vector<Foot> feet_;
 };
 
-// A strip of two rows of eight pictures at equal time intervals over the last steps, or over the
-// whole run if there are no steps. Throws std::runtime_error (no EGL, no model).
-sim::Image film_strip(const lab::Log& log);
+// Pictures of the run at these times, s, in rows of lab::kStripColumns. Throws std::runtime_error
+// (no EGL, no model, no rows).
+sim::Image film_strip(const lab::Log& log, std::span<const double> times);
 
 // The whole run at 30 frames per second. Throws std::runtime_error (no EGL, no ffmpeg, no model).
 void write_film(const lab::Log& log, const std::string& path);

@@ -331,6 +331,20 @@ int Log::find(std::string_view name) const {
   return -1;
 }
 
+std::vector<std::string> parts(const Log& log, std::string_view prefix, std::string_view suffix) {
+  std::vector<std::string> names;
+  for (const LoggedSignal& signal : log.signals) {
+    const std::string_view name = signal.name;
+    if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) ||
+        !name.ends_with(suffix)) {
+      continue;
+    }
+    const std::string part(name.substr(prefix.size(), name.size() - prefix.size() - suffix.size()));
+    if (std::ranges::find(names, part) == names.end()) names.push_back(part);
+  }
+  return names;
+}
+
 const std::vector<float>* Log::values(std::string_view name) const {
   const int index = find(name);
   return index < 0 ? nullptr : &column[static_cast<std::size_t>(index)];

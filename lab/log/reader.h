@@ -81,6 +81,7 @@ struct Log {
   std::map<std::string, std::string> run;
   std::string setup;             // JSON: the initial condition of a replay
   std::int64_t rate_mhz = 1000;  // ticks per second, in millihertz
+  bool part = false;             // a window of the run, see window.h
   int row_every = 1;             // ticks between rows, except around transitions and faults
   std::vector<LoggedSignal> signals;
   std::vector<std::int64_t> tick;          // of each row, increasing
@@ -103,6 +104,10 @@ struct Log {
   std::string get(const std::string& key, const std::string& otherwise = "") const;
   std::size_t rows() const { return time.size(); }
 };
+
+// The parts of signal names between `prefix` and `suffix`, each once, in log order:
+// parts("contact.", "") gives the feet.
+std::vector<std::string> parts(const Log& log, std::string_view prefix, std::string_view suffix);
 
 struct ReadOptions {
   bool all_rows = false;  // false: only every row_every-th tick, evenly spaced

@@ -7,6 +7,7 @@ namespace footfall::lab {
 
 Log log_window(const Log& log, double from, double to) {
   Log out = log;
+  out.part = true;
   const auto begin = std::ranges::lower_bound(log.time, from) - log.time.begin();
   const auto end = std::max(std::ranges::upper_bound(log.time, to) - log.time.begin(), begin);
   const auto cut = [&](auto& values) {

@@ -5,7 +5,8 @@
 
 namespace footfall::lab {
 
-// Rows and events from `from` to `to` (s, both inclusive); everything else unchanged. May be empty.
+// Rows and events from `from` to `to` (s, both inclusive); everything else unchanged; Log::part is
+// set. May be empty.
 Log log_window(const Log& log, double from, double to);
 
 // Reduces a log read with all_rows to the rows that are read without it.

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/json_text.h"
+#include "lab/figures/log_figures.h"
+#include "lab/figures/step_counter.h"
 
 namespace footfall::lab {
 namespace {
-
-constexpr double kMinSwing = 0.06;  // s, see docs/architecture.md, "How we count"
 
 std::string last_part(const std::string& path) {
   const std::size_t dot = path.rfind('.');
@@ -84,20 +84,6 @@ std::string state_path(const Log& log, std::size_t row) {
   return paths[static_cast<std::size_t>(index)];
 }
 
-std::vector<std::string> parts(const Log& log, std::string_view prefix, std::string_view suffix) {
-  std::vector<std::string> names;
-  for (const LoggedSignal& signal : log.signals) {
-    const std::string_view name = signal.name;
-    if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) ||
-        !name.ends_with(suffix)) {
-      continue;
-    }
-    const std::string part(name.substr(prefix.size(), name.size() - prefix.size() - suffix.size()));
-    if (std::ranges::find(names, part) == names.end()) names.push_back(part);
-  }
-  return names;
-}
-
 std::vector<SupportPhase> single_support(const Log& log) {
   std::vector<SupportPhase> phases;
   const std::vector<std::string> feet = parts(log, "contact.", "");
@@ -135,28 +121,26 @@ std::vector<PlannerColumns> planners(const Log& log) {
 
 std::vector<Touchdown> touchdowns(const Log& log) {
   std::vector<Touchdown> list;
-  const std::vector<PlannerColumns> plans = planners(log);
-  for (const std::string& foot : parts(log, "contact.", "")) {
-    const auto& contact = *log.values("contact." + foot);
-    const auto point = xy(log, "point." + foot);
-    if (point[0] == nullptr || point[1] == nullptr) continue;
-    std::size_t off = 0;  // row at which the foot left the ground
-    for (std::size_t row = 1; row < log.rows(); ++row) {
-      if (contact[row] < 0.5F && contact[row - 1] >= 0.5F) off = row;
-      if (contact[row] < 0.5F || contact[row - 1] >= 0.5F || off == 0) continue;
-      if (log.time[row] - log.time[off] < kMinSwing) continue;
-      const auto at = [&](const auto& columns, std::size_t i) -> Point2 {
-        return {static_cast<double>((*columns[0])[i]), static_cast<double>((*columns[1])[i])};
-      };
-      Touchdown touch{log.time[row], foot, at(point, row), {}, false};
-      if (!plans.empty() && plans[0].target[0] != nullptr && plans[0].target[1] != nullptr) {
-        touch.target = at(plans[0].target, row - 1);
-        touch.planned = touch.target != Point2{0.0, 0.0};
-      }
-      list.push_back(touch);
+  const SampleNames names = sample_names(log);
+  const SampleColumns columns =
+      sample_columns(names, [&](std::string_view name) { return log.find(name); });
+  StepCounter counter(static_cast<int>(names.contacts.size()),
+                      1e3 / static_cast<double>(log.rate_mhz));
+  std::array<double, core::kMaxContacts> heights{};
+  for (std::size_t row = 0; row < log.rows(); ++row) {
+    const TickSample tick =
+        read_sample(columns, [&](int i) { return log.column[static_cast<std::size_t>(i)][row]; });
+    for (std::size_t c = 0; c < names.contacts.size(); ++c) heights[c] = tick.point[c][2];
+    counter.observe(log.time[row], tick.contact.data(), heights.data());
+    for (std::size_t c = 0; c < names.contacts.size(); ++c) {
+      if (!counter.touched_down(static_cast<int>(c))) continue;
+      list.push_back({log.time[row],
+                      names.contacts[c],
+                      {tick.point[c][0], tick.point[c][1]},
+                      tick.target,
+                      tick.has_target()});
     }
   }
-  std::ranges::sort(list, {}, &Touchdown::time);
   return list;
 }
 
@@ -194,22 +178,6 @@ std::vector<float> Grid::thin(const std::vector<float>& column, double scale) co
     put(least < greatest ? *greatest : *least);
   }
   return out;
-}
-
-Spread spread(const Log& log, const std::vector<float>& values, double from) {
-  Spread result;
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (std::size_t row = 0; row < log.rows(); ++row) {
-    if (log.time[row] < from || !std::isfinite(values[row])) continue;
-    const auto value = static_cast<double>(values[row]);
-    sum += value * value;
-    result.max = std::max(result.max, std::abs(value));
-    ++count;
-  }
-  result.valid = count > 0;
-  if (count > 0) result.rms = std::sqrt(sum / static_cast<double>(count));
-  return result;
 }
 
 }  // namespace footfall::lab

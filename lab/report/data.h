@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "lab/log/reader.h"
@@ -45,6 +44,7 @@ struct Touchdown {
   Point2 target{};       // last planned target
   bool planned = false;  // whether there was a target
 };
+// Of the swings that the run's figures count, see lab/figures/step_counter.h.
 std::vector<Touchdown> touchdowns(const Log& log);
 
 // Columns of a planner: predicted CoM position and velocity at the switch, and the foot's target.
@@ -55,10 +55,6 @@ struct PlannerColumns {
   bool predicts() const { return position[0] && position[1] && velocity[0] && velocity[1]; }
 };
 std::vector<PlannerColumns> planners(const Log& log);
-
-// The parts of signal names between `prefix` and `suffix`, each once, in log order:
-// parts("contact.", "") gives the feet.
-std::vector<std::string> parts(const Log& log, std::string_view prefix, std::string_view suffix);
 
 // Rows [begin, end) of a log on a common time axis of at most `points` points. Thinned if
 // necessary: each bucket keeps its minimum and maximum in their order of time.
@@ -74,12 +70,5 @@ class Grid {
   std::size_t begin_, end_, buckets_;  // buckets_ 0: no thinning
   std::vector<double> time_;
 };
-
-// Root mean square and largest magnitude over the rows from time `from` (s) on.
-struct Spread {
-  double rms = 0.0, max = 0.0;
-  bool valid = false;
-};
-Spread spread(const Log& log, const std::vector<float>& values, double from);
 
 }  // namespace footfall::lab

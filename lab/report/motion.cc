@@ -18,7 +18,7 @@ constexpr std::size_t kPortraits = 40;
 constexpr std::size_t kPortraitPoints = 60;
 constexpr double kMinPhase = 0.06;  // minimum duration of single support that counts as a step, s
 
-double at(const std::vector<float>& column, std::size_t row) {
+double value_at(const std::vector<float>& column, std::size_t row) {
   return static_cast<double>(column[row]);
 }
 
@@ -35,7 +35,7 @@ PlaneCurve com_path(const std::vector<float>& x, const std::vector<float>& y) {
   PlaneCurve path{"centre of mass", "actual", Mark::line, {}, 1.0};
   const std::size_t stride = x.size() / kPathPoints + 1;
   for (std::size_t row = 0; row < x.size(); row += stride)
-    path.points.push_back({at(x, row), at(y, row)});
+    path.points.push_back({value_at(x, row), value_at(y, row)});
   return path;
 }
 
@@ -49,11 +49,11 @@ void add_plans(const Log& log, std::vector<PlaneCurve>& curves) {
     for (const SupportPhase& phase : phases) {
       const std::size_t row = phase.end - 1;
       if (plan.predicts()) {
-        const Point2 p = {at(*plan.position[0], row), at(*plan.position[1], row)};
+        const Point2 p = {value_at(*plan.position[0], row), value_at(*plan.position[1], row)};
         if (p != Point2{0.0, 0.0}) predicted.points.push_back(p);
       }
       if (plan.target[0] != nullptr && plan.target[1] != nullptr) {
-        const Point2 p = {at(*plan.target[0], row), at(*plan.target[1], row)};
+        const Point2 p = {value_at(*plan.target[0], row), value_at(*plan.target[1], row)};
         if (p != Point2{0.0, 0.0}) targets.points.push_back(p);
       }
     }
@@ -112,7 +112,7 @@ class Portraits {
     foot_x_ = log_.values("point." + phase.foot + ".x");
     foot_y_ = log_.values("point." + phase.foot + ".y");
     if (foot_x_ == nullptr || foot_y_ == nullptr) return;
-    yaw_ = columns_.yaw != nullptr ? at(*columns_.yaw, phase.begin) : 0.0;
+    yaw_ = columns_.yaw != nullptr ? value_at(*columns_.yaw, phase.begin) : 0.0;
     const int step = static_cast<int>(facts.size()) + 1;
     const PlaneCurve empty{
         label_of(phase.foot), colour_of(phase.foot), Mark::line, {}, 0.55, -1, step};
@@ -120,7 +120,7 @@ class Portraits {
     const std::size_t stride = (phase.end - phase.begin) / kPortraitPoints + 1;
     for (std::size_t row = phase.begin; row < phase.end; row += stride) {
       const Point2 p = from_foot(row);
-      const Point2 v = turned(at(*columns_.vx, row), at(*columns_.vy, row), yaw_);
+      const Point2 v = turned(value_at(*columns_.vx, row), value_at(*columns_.vy, row), yaw_);
       for (std::size_t k = 0; k < 2; ++k) curve[k].points.push_back({p[k], v[k]});
     }
     for (std::size_t k = 0; k < 2; ++k) planes[k].curves.push_back(std::move(curve[k]));
@@ -133,10 +133,11 @@ class Portraits {
  private:
   // The planner's prediction for the phase's last row, and its difference from the actual state.
   void add_prediction(std::size_t end, int step) {
-    const Point2 p = {at(*plans_[0].position[0], end), at(*plans_[0].position[1], end)};
+    const Point2 p = {value_at(*plans_[0].position[0], end), value_at(*plans_[0].position[1], end)};
     if (p == Point2{0.0, 0.0}) return;  // no plan yet
-    const Point2 q = turned(p[0] - at(*foot_x_, end), p[1] - at(*foot_y_, end), yaw_);
-    const Point2 v = turned(at(*plans_[0].velocity[0], end), at(*plans_[0].velocity[1], end), yaw_);
+    const Point2 q = turned(p[0] - value_at(*foot_x_, end), p[1] - value_at(*foot_y_, end), yaw_);
+    const Point2 v =
+        turned(value_at(*plans_[0].velocity[0], end), value_at(*plans_[0].velocity[1], end), yaw_);
     const char* label = any_predicted_ ? "" : "predicted for the switch";
     for (std::size_t k = 0; k < 2; ++k) {
       planes[k].curves.push_back({label, "plan", Mark::cross, {{q[k], v[k]}}, 0.9, -1, step});
@@ -148,8 +149,8 @@ class Portraits {
   }
   // Position of the centre of mass relative to the stance foot, m, heading frame.
   Point2 from_foot(std::size_t row) const {
-    return turned(at(*columns_.x, row) - at(*foot_x_, row),
-                  at(*columns_.y, row) - at(*foot_y_, row), yaw_);
+    return turned(value_at(*columns_.x, row) - value_at(*foot_x_, row),
+                  value_at(*columns_.y, row) - value_at(*foot_y_, row), yaw_);
   }
   // The legend names each foot once.
   std::string label_of(const std::string& foot) {
@@ -171,6 +172,16 @@ class Portraits {
   const std::vector<float>*foot_x_ = nullptr, *foot_y_ = nullptr;  // of the current phase
   double yaw_ = 0.0;                                               // rad, at the start of the phase
 };
+
+// The figures of the summary: one definition for tile and section.
+std::string placement_text(const nlohmann::json& summary) {
+  const nlohmann::json figures =
+      summary.is_object() ? summary.value("foot_placement_m", nlohmann::json()) : nlohmann::json();
+  if (!figures.is_object() || !figures.contains("count")) return "";
+  return fmt::format(" Mean distance {:.2f} mm, largest {:.2f} mm over {} steps from {:.3g} s on.",
+                     1e3 * figures.value("mean", 0.0), 1e3 * figures.value("max", 0.0),
+                     figures.value("count", 0), summary.value("counted_from_s", 0.0));
+}
 
 }  // namespace
 
@@ -203,8 +214,11 @@ Section path_section(const Log& log) {
   const auto* goal_y = log.values("goal.y");
   if (goal_x != nullptr && goal_y != nullptr && log.rows() > 0) {
     const std::size_t last = log.rows() - 1;
-    plot.curves.push_back(
-        {"goal at the end", "c3", Mark::cross, {{at(*goal_x, last), at(*goal_y, last)}}, 1.0});
+    plot.curves.push_back({"goal at the end",
+                           "c3",
+                           Mark::cross,
+                           {{value_at(*goal_x, last), value_at(*goal_y, last)}},
+                           1.0});
   }
   PlanePlot near{"path-com", "Centre of mass alone", "x, m", "y, m", {}, true, 0.02};
   near.curves.push_back(com_path(*x, *y));
@@ -233,7 +247,7 @@ Section phase_section(const Log& log) {
   return section;
 }
 
-Section planner_section(const Log& log) {
+Section planner_section(const Log& log, const nlohmann::json& summary) {
   Section section{"planner",
                   "Planned and actual footsteps",
                   "Touchdown minus the last planned target, and the planner's targets over time.",
@@ -249,8 +263,7 @@ Section planner_section(const Log& log) {
     scatter.curves.push_back({label, i == 0 ? "c1" : "c2", Mark::dot, {}, 0.9});
     by_step.curves.push_back({label, i == 0 ? "c1" : "c2", Mark::dot, {}, 0.9});
   }
-  double sum = 0.0, worst = 0.0;
-  int count = 0, step = 0;
+  int step = 0;
   for (const Touchdown& touch : touchdowns(log)) {
     ++step;
     if (!touch.planned) continue;
@@ -259,13 +272,9 @@ Section planner_section(const Log& log) {
     const auto foot = static_cast<std::size_t>(std::ranges::find(feet, touch.foot) - feet.begin());
     scatter.curves[foot].points.push_back({dx, dy});
     by_step.curves[foot].points.push_back({static_cast<double>(step), std::hypot(dx, dy)});
-    sum += std::hypot(dx, dy);
-    worst = std::max(worst, std::hypot(dx, dy));
-    ++count;
   }
-  if (count > 0) {
-    section.lead += fmt::format(" Mean distance {:.1f} mm, largest {:.1f} mm over {} steps.",
-                                sum / count, worst, count);
+  if (std::ranges::any_of(scatter.curves, [](const auto& c) { return !c.points.empty(); })) {
+    section.lead += placement_text(summary);
     section.planes = {std::move(scatter), std::move(by_step)};
   }
   for (const PlannerColumns& plan : planners(log)) {

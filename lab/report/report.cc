@@ -5,9 +5,14 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/text/json_text.h"
+#include "lab/figures/log_figures.h"
 #include "lab/report/sections.h"
+#include "lab/run/summary.h"
 
 namespace footfall::lab {
 namespace {
@@ -28,7 +33,8 @@ std::size_t zoom_begin(const Log& log) {
 Section film_section(const ReportOptions& options) {
   Section section{"film", "Film", "", "", {}, {}};
   if (!options.strip_png.empty()) {
-    section.lead = "The last steps at equal times; arrows: forces of the ground on the feet.";
+    section.lead =
+        escape_html(options.strip_caption) + ". Arrows: forces of the ground on the feet.";
     section.html =
         "<div class=\"strip\" tabindex=\"0\"><img alt=\"The robot at equal times over the run\" "
         "src=\"data:image/png;base64," +
@@ -67,7 +73,28 @@ Section state_section(const ReportOptions& options) {
   return section;
 }
 
+nlohmann::json fault_counts(const Log& log) {
+  std::map<std::string, int> counts;
+  for (const LoggedEvent& event : log.events) {
+    if (event.kind == "fault") ++counts[event.name];
+  }
+  return counts;
+}
+
 }  // namespace
+
+nlohmann::json page_summary(const Log& log, const std::string& summary_json) {
+  nlohmann::json summary = core::parse_json(summary_json);
+  if (!summary.is_object()) summary = nlohmann::json::object();
+  if (!log.part && summary.contains("error")) return summary;
+  summary.update(nlohmann::json(figures_json(log_figures(log))));
+  summary["faults"] = fault_counts(log);
+  for (const char* key : {"fault_ticks", "worst_fault", "tick_us", "allocations",
+                          "real_time_factor", "end_torque_step_Nm", "marked_steps"}) {
+    summary.erase(key);
+  }
+  return summary;
+}
 
 std::string report_html(const Log& log, const ReportOptions& options) {
   const bool interactive = has_interactive_plots() && !options.static_plots;
@@ -77,7 +104,9 @@ std::string report_html(const Log& log, const ReportOptions& options) {
   const std::vector<PlotMark> marks = run_marks(log);
   const PlotFrame frame{run, zoom, bands, marks};
 
-  Section summary{"summary", "Summary", "", summary_html(log, options.summary_json), {}, {}};
+  const nlohmann::json figures = core::parse_json(options.summary_json);
+  Section summary{"summary", "Summary", summary_lead(log, figures), summary_html(log, figures),
+                  {},        {}};
   Section settings{"settings", "Settings", "", settings_html(log), {}, {}};
   const std::vector<Section> sections = {summary,
                                          film_section(options),
@@ -88,7 +117,7 @@ std::string report_html(const Log& log, const ReportOptions& options) {
                                          posture_section(log),
                                          torque_section(log),
                                          force_section(log),
-                                         planner_section(log),
+                                         planner_section(log, figures),
                                          state_section(options),
                                          event_section(log),
                                          timing_section(options.timing_json),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,16 @@
 
 namespace footfall::lab {
 
+// What a page says of the run: the content of its summary.json, may be empty. In a page of a part,
+// or without that file, the figures come from the log, and what a clock measured over the whole run
+// is left out.
+nlohmann::json page_summary(const Log& log, const std::string& summary_json);
+
 struct ReportOptions {
   std::string summary_json;             // text of summary.json, may be empty
   std::string timing_json;              // text of timing.json, may be empty
   std::vector<std::uint8_t> strip_png;  // film strip, may be empty
+  std::string strip_caption;            // what it shows
   std::string strip_note;               // why it is empty, e.g. the renderer's error
   std::string diagram_svg;              // state diagram, may be empty
   std::string diagram_note;             // why it is empty

@@ -1,6 +1,7 @@
 // The sections of the report, in order.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -26,15 +27,16 @@ Section task_section(const Log& log);
 Section posture_section(const Log& log);
 Section torque_section(const Log& log);
 Section force_section(const Log& log);
-Section planner_section(const Log& log);
+Section planner_section(const Log& log, const nlohmann::json& summary);
 Section event_section(const Log& log);
 // External inputs and faults: edits with the values before, pushes, injected faults, faults.
 Section mark_section(const Log& log);
 std::vector<PlotMark> run_marks(const Log& log);
 // timing: content of timing.json, may be empty.
 Section timing_section(const std::string& timing);
-// The cards at the top and the table of settings. summary: content of summary.json, may be empty.
-std::string summary_html(const Log& log, const std::string& summary);
+// The cards at the top, what they count, and the table of settings. summary: of page_summary().
+std::string summary_html(const Log& log, const nlohmann::json& summary);
+std::string summary_lead(const Log& log, const nlohmann::json& summary);
 std::string settings_html(const Log& log);
 
 // Replaces `_` by blanks: `right_foot` becomes `right foot`.

@@ -14,7 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSettled = 2.0;  // s, see docs/architecture.md, "How we count"
 constexpr std::size_t kMaxEvents = 1000;
 constexpr std::size_t kMaxSetting = 300;  // maximum number of characters shown of a setting
 
@@ -41,26 +40,11 @@ std::string measure(double value, const std::string& unit) {
   return fmt::format("{:.3g} {}", value * scale, name);
 }
 
-// Error metrics from the summary, else from the log.
-std::string error_card(const Log& log, const json& summary, const std::string& key) {
+std::string error_card(const json& summary, const std::string& key) {
   const std::string unit = key == "height" ? "m" : "rad";
-  auto rms = number_at(summary, "/error/" + key + "/rms");
-  auto max = number_at(summary, "/error/" + key + "/max");
-  if (!rms || !max) {
-    std::vector<float> values;
-    if (key != "height") {
-      if (const auto* angle = log.values("base.rpy." + key)) values = *angle;
-    } else if (log.values("com.pos.z") != nullptr && log.values("com.ref.z") != nullptr) {
-      values = *log.values("com.pos.z");
-      const auto& reference = *log.values("com.ref.z");
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= reference[i];
-    }
-    if (values.empty()) return "";
-    const Spread found = spread(log, values, kSettled);
-    if (!found.valid) return "";
-    rms = found.rms;
-    max = found.max;
-  }
+  const auto rms = number_at(summary, "/error/" + key + "/rms");
+  const auto max = number_at(summary, "/error/" + key + "/max");
+  if (!rms || !max) return "";
   return card(key + " error, largest", measure(*max, unit), "rms " + measure(*rms, unit));
 }
 
@@ -84,6 +68,14 @@ void add_number(std::string& out, const json& summary, const char* pointer, cons
   if (value) out += card(name, measure(*value, unit), note);
 }
 
+std::string placement_note(const json& summary) {
+  const auto worst = number_at(summary, "/foot_placement_m/max");
+  const auto count = number_at(summary, "/foot_placement_m/count");
+  std::string note = worst ? "largest " + measure(*worst, "m") : "";
+  if (count) note += fmt::format("{}{:.0f} steps", note.empty() ? "" : ", ", *count);
+  return note;
+}
+
 // ` (worst left_knee 7.2 Nm)` for joint faults.
 std::string worst_place(const json& summary, const std::string& fault) {
   const json::json_pointer place = json::json_pointer("/worst_fault") / fault;
@@ -99,18 +91,16 @@ std::string worst_place(const json& summary, const std::string& fault) {
   return {};
 }
 
-std::string faults_card(const Log& log, const json& summary) {
+std::string faults_card(const json& summary) {
   std::string names;
   std::int64_t count = 0;
-  if (summary.is_object() && summary.contains("faults") && summary["faults"].is_object()) {
-    for (const auto& [name, value] : summary["faults"].items()) {
-      if (!value.is_number() || value.get<double>() == 0.0) continue;
-      count += value.get<std::int64_t>();
-      names += (names.empty() ? "" : ", ") + name + " " + core::json_text(value) +
-               worst_place(summary, name);
-    }
-  } else if (const auto* faults = log.values("faults"); faults != nullptr && !faults->empty()) {
-    count = std::lround(faults->back());
+  const json faults =
+      summary.is_object() ? summary.value("faults", json::object()) : json::object();
+  for (const auto& [name, value] : faults.items()) {
+    if (!value.is_number() || value.get<double>() == 0.0) continue;
+    count += value.get<std::int64_t>();
+    names += (names.empty() ? "" : ", ") + name + " " + core::json_text(value) +
+             worst_place(summary, name);
   }
   return card("faults", std::to_string(count), names, count > 0 ? "warn" : "");
 }
@@ -183,18 +173,31 @@ std::optional<PlanePlot> percentiles(const json& timing, std::string& rows) {
 
 }  // namespace
 
-std::string summary_html(const Log& log, const std::string& summary_text) {
-  const json summary = core::parse_json(summary_text);
+std::string summary_lead(const Log& log, const json& summary) {
+  const auto from = number_at(summary, "/counted_from_s");
+  if (log.rows() == 0 || !from) return "";
+  const double end = log.time.back();
+  if (log.part) {
+    return fmt::format(
+        "Of the part from {:.3f} s to {:.3f} s; only the outcome is that of the whole run.", *from,
+        end);
+  }
+  if (*from == 0.0) return "Of the whole run.";
+  return fmt::format(
+      "Errors, foot placement, torques and internal forces from {:.3g} s on, when the start has "
+      "died "
+      "away; the rest of the whole run.",
+      *from);
+}
+
+std::string summary_html(const Log& log, const json& summary) {
   std::string out = "<div class=\"cards\">" + outcome_card(log, summary);
-  const auto* steps = log.values("steps");
-  const double from_log =
-      steps != nullptr && !steps->empty() ? static_cast<double>(steps->back()) : 0;
-  out += card("steps", fmt::format("{:.0f}", number_at(summary, "/steps").value_or(from_log)));
+  if (const auto steps = number_at(summary, "/steps"))
+    out += card("steps", fmt::format("{:.0f}", *steps));
   out += time_card(summary, log);
-  for (const char* key : {"roll", "pitch", "yaw", "height"}) out += error_card(log, summary, key);
-  const auto worst = number_at(summary, "/foot_placement_m/max");
+  for (const char* key : {"roll", "pitch", "yaw", "height"}) out += error_card(summary, key);
   add_number(out, summary, "/foot_placement_m/mean", "foot placement, mean", "m",
-             worst ? "largest " + measure(*worst, "m") : "");
+             placement_note(summary));
   add_number(out, summary, "/goal_error_m", "goal error", "m");
   add_number(out, summary, "/path_length_m", "path length", "m");
   add_number(out, summary, "/peak_torque_Nm", "peak torque", "N m");
@@ -217,13 +220,13 @@ std::string summary_html(const Log& log, const std::string& summary_text) {
                 p99 ? fmt::format("99 %: {:.3g} µs", *p99) : "");
   }
   add_number(out, summary, "/allocations", "allocations in the loop", "");
-  return out + faults_card(log, summary) + "</div>";
+  return out + faults_card(summary) + "</div>";
 }
 
 std::string settings_html(const Log& log) {
   std::string out = "<table class=\"keys\">";
   for (const auto& [key, value] : log.run) {
-    if (key == "states") continue;
+    if (key == "states" || key == "tasks") continue;
     const bool fits = value.size() <= kMaxSetting;
     out += fmt::format("<tr><th>{}</th><td>{}{}</td></tr>", escape_html(key),
                        escape_html(value.substr(0, kMaxSetting)), fits ? "" : "…");

@@ -25,7 +25,11 @@ double seconds_since(Clock::time_point start) {
 class Recorder final : public engine::TickObserver {
  public:
   Recorder(engine::ControlLoop& loop, RunSpec& spec)
-      : spec_(spec), metrics_(loop), first_log_(loop, spec.log, spec.said), log_(&first_log_) {
+      : spec_(spec),
+        metrics_(sample_names(loop.behavior()), loop.period()),
+        first_log_(loop, spec.log, spec.said),
+        log_(&first_log_) {
+    find_columns(loop, sample_names(loop.behavior()));
     log_->begin();
   }
 
@@ -61,7 +65,7 @@ class Recorder final : public engine::TickObserver {
   }
 
   void after_compute(engine::ControlLoop& loop) override {
-    const StepEvent step = metrics_.observe(current_goal(loop));
+    const StepEvent step = metrics_.observe(sampled(loop));
     if (step.foot >= 0) last_step_at_ = loop.time();
     log_->after_tick(step);
     if (spec_.observer) spec_.observer->after_tick();
@@ -71,7 +75,9 @@ class Recorder final : public engine::TickObserver {
 
   void exchanged(engine::ControlLoop& now) override {
     tell_news();
-    metrics_.go_on(now);
+    const SampleNames names = sample_names(now.behavior());
+    metrics_.go_on(names);
+    find_columns(now, names);
     log_ = &spec_.reloads->log();
     log_->begin();
     log_->before_tick();
@@ -81,15 +87,18 @@ class Recorder final : public engine::TickObserver {
   const StepCounter& steps() const { return metrics_.counter(); }
   RunLog& log() { return *log_; }
   RunEnd end() const { return end_; }
-  RunFigures figures(bool fell) const { return metrics_.figures(fell); }
+  RunFigures figures(double time, bool fell) const { return metrics_.figures(time, fell); }
   double wall_time() const { return seconds_since(started_); }  // s
 
  private:
-  // The position that the robot is to go to; the origin if its behavior has no goal.
-  static std::array<double, 2> current_goal(const engine::ControlLoop& loop) {
-    if (!has_goal(loop.behavior())) return {};
-    const auto slot = static_cast<std::size_t>(loop.behavior().planners.front().goal_slot);
-    return {loop.machine().parameters()[slot], loop.machine().parameters()[slot + 1]};
+  void find_columns(const engine::ControlLoop& loop, const SampleNames& names) {
+    columns_ = sample_columns(names, [&](std::string_view n) { return loop.signals().find(n); });
+  }
+
+  TickSample sampled(const engine::ControlLoop& loop) const noexcept {
+    TickSample tick = read_sample(columns_, [&](int i) { return loop.signals()[i]; });
+    tick.going_on = loop.state() == engine::LoopState::running;
+    return tick;
   }
 
   // Nobody waits for them here; what was applied is in the log.
@@ -125,6 +134,7 @@ class Recorder final : public engine::TickObserver {
 
   RunSpec& spec_;
   RunMetrics metrics_;
+  SampleColumns columns_;
   RunLog first_log_;
   RunLog* log_;  // of the loop that runs
   RunEnd end_ = RunEnd::time;
@@ -221,7 +231,7 @@ RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
   result.end = end == engine::ExecutiveEnd::asked      ? RunEnd::stopped
                : end == engine::ExecutiveEnd::observer ? recorder.end()
                                                        : end_of(last);
-  result.figures = recorder.figures(result.end == RunEnd::fall);
+  result.figures = recorder.figures(last.time(), result.end == RunEnd::fall);
   if (result.end == RunEnd::fall || result.end == RunEnd::fault) {
     result.cause = explain_end(last, recorder.log().states_before());
   }

@@ -15,8 +15,8 @@
 #include "engine/log/writer.h"
 #include "engine/realtime/live_port.h"
 #include "engine/tick/control_loop.h"
+#include "lab/figures/metrics.h"
 #include "lab/run/end.h"
-#include "lab/run/metrics.h"
 
 namespace footfall::lab {
 

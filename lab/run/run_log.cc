@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/index.h"
@@ -173,6 +174,19 @@ void RunLog::say(const std::string& text, std::string_view from) {
   if (said_) said_(loop_.time(), text);
 }
 
+namespace {
+
+// The type of each name of a task; readers need it to know what `task.NAME.reference.z` refers to.
+std::map<std::string, std::string> task_types(const behaviors::Behavior& behavior) {
+  std::map<std::string, std::string> types;
+  for (const behaviors::TaskInstance& task : behavior.task_instances) {
+    types[behavior.task_names[at(task.signals)].name] = tasks::info(task.type).name;
+  }
+  return types;
+}
+
+}  // namespace
+
 engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const LogSource& source) {
   std::vector<std::string> states;
   for (const behaviors::StateInfo& state : behavior.states) states.push_back(state.path);
@@ -192,6 +206,7 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
                 {"model", behavior.robot.model_path},
                 {"rate_hz", fmt::format("{}", behavior.robot.rate_hz())},
                 {"states", core::json_text(states)},
+                {"tasks", core::json_text(nlohmann::json(task_types(behavior)))},
                 {"contacts", core::json_text(header.contacts)},
                 {"joints", core::json_text(header.joints)}};
   if (source.friction > 0.0) {

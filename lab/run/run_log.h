@@ -12,7 +12,7 @@
 
 #include "engine/log/writer.h"
 #include "engine/tick/control_loop.h"
-#include "lab/run/step_counter.h"
+#include "lab/figures/step_counter.h"
 
 namespace footfall::lab {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "lab/run/step_counter.h"
+#include "lab/figures/step_counter.h"
 
 namespace footfall::lab {
 namespace {
@@ -197,6 +197,35 @@ std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& beh
   return unused;
 }
 
+Json figures_json(const RunFigures& f) {
+  Json out;
+  out["steps"] = f.steps;
+  out["time_s"] = f.time;
+  out["error"] = {{"roll", error_json(f.roll)},
+                  {"pitch", error_json(f.pitch)},
+                  {"yaw", error_json(f.yaw)},
+                  {"height", error_json(f.height)}};
+  out["foot_placement_m"] =
+      f.placements > 0
+          ? Json{{"mean", f.placement_mean}, {"max", f.placement_max}, {"count", f.placements}}
+          : Json();
+  const bool settled = f.roll.count > 0;  // there was a tick
+  out["max_torque_step_Nm"] = settled ? Json(f.max_torque_step) : Json();
+  out["peak_torque_Nm"] = settled ? Json(f.peak_torque) : Json();
+  out["goal_error_m"] = f.steps > 0 ? Json(f.goal_error) : Json();
+  out["path_length_m"] = f.path_length;
+  out["internal_force"] = internal_json(f);
+  out["counted_from_s"] = f.counted_from;
+  out["start_m"] = f.start;
+  out["end_m"] = f.end;
+  out["moved_m"] = moved(f);
+  out["max_distance_m"] = f.max_distance;
+  out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
+  out["clearance_min_m"] = f.steps > 0 ? Json(f.worst_clearance) : Json();
+  out["mean_step_time_s"] = f.steps > 1 ? Json(f.mean_step_time) : Json();
+  return out;
+}
+
 Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_only) {
   const RunFigures& f = result.figures;
   Json out;
@@ -207,40 +236,19 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["backend"] = id.backend;
   out["seed"] = id.seed;
   out["end"] = run_end_name(result.end);
-  out["steps"] = f.steps;
-  out["time_s"] = f.time;
   out["fell"] = f.fell;
-  out["error"] = {{"roll", error_json(f.roll)},
-                  {"pitch", error_json(f.pitch)},
-                  {"yaw", error_json(f.yaw)},
-                  {"height", error_json(f.height)}};
-  out["foot_placement_m"] =
-      f.placements > 0 ? Json{{"mean", f.placement_mean}, {"max", f.placement_max}} : Json();
-  const bool settled = f.roll.count > 0;  // there was a tick
-  out["max_torque_step_Nm"] = settled ? Json(f.max_torque_step) : Json();
-  out["peak_torque_Nm"] = settled ? Json(f.peak_torque) : Json();
-  out["goal_error_m"] = f.steps > 0 ? Json(f.goal_error) : Json();
-  out["path_length_m"] = f.path_length;
-  out["internal_force"] = internal_json(f);
+  out.update(figures_json(f));
   out["faults"] = faults_json(result.faults);
   out["fault_ticks"] = fault_ticks_json(result.faults);
-  out["counted_from_s"] = f.counted_from;
-  out["start_m"] = f.start;
-  out["end_m"] = f.end;
-  out["moved_m"] = moved(f);
   out["cause"] = cause_json(result);
   out["worst_fault"] = worst_json(result);
   const bool let_go = result.end == RunEnd::finished || result.cause.has_value();
-  out["end_torque_step_Nm"] = settled && let_go ? Json(f.end_torque_step) : Json();
+  out["end_torque_step_Nm"] = f.roll.count > 0 && let_go ? Json(f.end_torque_step) : Json();
   out["marked_steps"] = result.marked_steps;
   out["unused_torque_loops"] = torque_loops_json(id);
-  out["max_distance_m"] = f.max_distance;
   out["missed"] = result.missed;
   out["variation"] = variation_json(id);
   out["log_lost_ticks"] = result.log_lost;
-  out["mean_speed_last_50_mps"] = {f.mean_velocity_last_50[0], f.mean_velocity_last_50[1]};
-  out["clearance_min_m"] = f.steps > 0 ? Json(f.worst_clearance) : Json();
-  out["mean_step_time_s"] = f.steps > 1 ? Json(f.mean_step_time) : Json();
   if (!physics_only) {
     out["tick_us"] = tick_json(result.tick_time);
     out["allocations"] = result.allocations >= 0 ? Json(result.allocations) : Json();

@@ -35,6 +35,9 @@ struct RunIdentity {
 // {NAME: number or list}
 nlohmann::ordered_json variation_json(const RunIdentity& id);
 
+// What summary_json says of the figures, and a page of a part of a run.
+nlohmann::ordered_json figures_json(const RunFigures& figures);
+
 // `physics_only` leaves out what a wall clock measured (tick_us, real_time_factor).
 nlohmann::ordered_json summary_json(const RunIdentity& id, const RunResult& result,
                                     bool physics_only = false);

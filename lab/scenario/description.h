@@ -17,6 +17,8 @@
 
 namespace footfall::lab {
 
+inline constexpr std::int64_t kMostSeeds = 100'000;  // of a scenario or a command
+
 // Trigger of a script entry: a time, a place in the run, or an event.
 struct Moment {
   enum class Kind : std::uint8_t { time, place, event };

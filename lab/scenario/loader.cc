@@ -28,7 +28,6 @@ using core::YamlNode;
 
 constexpr double kLongestRun = 1e6;  // s
 constexpr std::int64_t kGreatestSeed = 1'000'000'000;
-constexpr std::int64_t kMostSeeds = 100'000;
 
 bool is_file(const std::string& path) {
   std::error_code error;

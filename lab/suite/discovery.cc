@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostSeeds = 100'000;
-
 std::string window_text(const Expectation& expectation) {
   std::string text;
   if (expectation.to) {
@@ -197,7 +195,8 @@ std::optional<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
   const auto first = number(std::string_view(text).substr(0, dots));
   const auto last =
       dots == std::string::npos ? first : number(std::string_view(text).substr(dots + 2));
-  if (!first || !last || *last < *first || *last - *first >= kMostSeeds) return std::nullopt;
+  if (!first || !last || *last < *first || *last - *first >= static_cast<std::uint64_t>(kMostSeeds))
+    return std::nullopt;
   std::vector<std::uint64_t> seeds(*last - *first + 1);
   std::iota(seeds.begin(), seeds.end(), *first);
   return seeds;

@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "lab/run/step_counter.h"
+#include "lab/figures/step_counter.h"
 #include "tests/support/rig.h"
 
 namespace footfall {
@@ -56,7 +56,7 @@ int run(const char* behavior_name) {
     loop.compute();
     std::array<double, 2> heights = {loop.model().point(0).position[2],
                                      loop.model().point(1).position[2]};
-    steps.observe(loop.sensors().contact.data(), heights.data());
+    steps.observe(loop.time(), loop.sensors().contact.data(), heights.data());
     const int active = loop.machine().active_atomic().front();
     if (active != previous) entered = loop.time();
     previous = active;

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lab/run/step_counter.h"
+#include "lab/figures/step_counter.h"
 #include "tests/support/rig.h"
 
 namespace footfall {
@@ -101,7 +101,7 @@ int run(const char* behavior_name) {
     loop.compute();
     const std::array<double, 2> heights = {loop.model().point(0).position[2],
                                            loop.model().point(1).position[2]};
-    steps.observe(loop.sensors().contact.data(), heights.data());
+    steps.observe(loop.time(), loop.sensors().contact.data(), heights.data());
     for (std::size_t c = 0; c < 2; ++c) {
       if (loop.sensors().contact[c] && !contact[c]) last_impact = loop.time();
       contact[c] = loop.sensors().contact[c];

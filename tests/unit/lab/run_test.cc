@@ -1,4 +1,4 @@
-// Runs: what ends them, when pushes fire, and that the figures are those of the logged signals.
+// Runs: what ends them, and when pushes fire.
 #include "lab/run/run.h"
 
 #include <gtest/gtest.h>
@@ -13,48 +13,11 @@
 #include "lab/log/reader.h"
 #include "lab/run/run_log.h"
 #include "tests/support/fake_robot.h"
+#include "tests/support/logged_run.h"
 #include "tests/support/rig.h"
 
 namespace footfall::tests {
 namespace {
-
-std::string temporary(const std::string& name) {
-  return testing::TempDir() + "footfall_" + std::to_string(getpid()) + "_" + name;
-}
-
-// Runs and reads back the log of every tick.
-struct Logged {
-  lab::RunResult result;
-  lab::Log log;
-};
-
-Logged run_logged(Rig& rig, lab::RunSpec& spec) {
-  const std::string path = temporary("run.mcap");
-  lab::LogSource source;
-  source.row_every = 1;
-  engine::LogWriter writer(path, rig.behavior->signals,
-                           lab::make_log_header(*rig.behavior, source));
-  spec.log = &writer;
-  Logged logged{lab::run(*rig.loop, spec), {}};
-  writer.close();
-  logged.log = lab::read_log(path);
-  std::filesystem::remove(path);
-  return logged;
-}
-
-std::vector<double> times_of(const lab::Log& log, const std::string& kind) {
-  std::vector<double> times;
-  for (const lab::LoggedEvent& event : log.events) {
-    if (event.kind == kind) times.push_back(event.time);
-  }
-  return times;
-}
-
-std::size_t row_at(const lab::Log& log, double time) {
-  std::size_t row = 0;
-  while (row + 1 < log.rows() && log.time[row] < time - 1e-6) ++row;
-  return row;
-}
 
 TEST(Run, EndsAfterTheStepsAskedFor) {
   Rig rig("balance");
@@ -280,73 +243,6 @@ TEST(Run, AGoalVelocityMovesTheGoal) {
     EXPECT_NEAR(static_cast<double>((*x)[row]), 0.02 + 0.1 * run.log.time[row], 1e-6);
     EXPECT_NEAR(static_cast<double>((*y)[row]), 0.01 - 0.05 * run.log.time[row], 1e-6);
   }
-}
-
-// Every figure again from the log, by its definition.
-TEST(RunFigures, AreThoseOfTheLoggedSignals) {
-  Rig rig("balance");
-  lab::RunSpec spec;
-  spec.max_time = 5.0;
-  const Logged run = run_logged(rig, spec);
-  const lab::Log& log = run.log;
-  const lab::RunFigures& f = run.result.figures;
-  ASSERT_EQ(log.rows(), 7500U);
-  const auto column = [&](const std::string& name) {
-    const auto* values = log.values(name);
-    if (!values) throw std::runtime_error("no signal " + name);
-    return std::vector<double>(values->begin(), values->end());
-  };
-  const auto x = column("com.pos.x"), y = column("com.pos.y");
-  const auto roll = column("base.rpy.roll"), yaw = column("base.rpy.yaw");
-  const auto step = column("torque.step");
-  std::vector<std::vector<double>> command;
-  for (const auto& joint : rig.behavior->robot.joints) {
-    command.push_back(column("joint." + joint.name + ".command"));
-  }
-  double path = 0.0, roll_max = 0.0, yaw_max = 0.0, roll_squares = 0.0, torque = 0.0, steps = 0.0;
-  double count = 0.0;
-  for (std::size_t row = 0; row < log.rows(); ++row) {
-    if (row > 0) path += std::hypot(x[row] - x[row - 1], y[row] - y[row - 1]);
-    if (log.time[row] < 2.0) continue;
-    count += 1.0;
-    roll_max = std::max(roll_max, std::abs(roll[row]));
-    roll_squares += roll[row] * roll[row];
-    yaw_max = std::max(yaw_max, std::abs(yaw[row]));
-    steps = std::max(steps, step[row]);
-    for (const auto& tau : command) torque = std::max(torque, std::abs(tau[row]));
-  }
-  // Logged as float: 6e-8 of each value; the path adds 7500 differences of numbers below 0.3 m.
-  EXPECT_NEAR(f.path_length, path, 7500 * 2 * 0.3 * 6e-8);
-  EXPECT_NEAR(f.roll.max, roll_max, 1e-6);  // its reference is 0
-  EXPECT_NEAR(f.roll.rms(), std::sqrt(roll_squares / count), 1e-6);
-  EXPECT_NEAR(f.yaw.max, yaw_max, 1e-6);
-  EXPECT_NEAR(f.max_torque_step, steps, 1e-5 * steps);
-  EXPECT_NEAR(f.peak_torque, torque, 1e-5 * torque);
-
-  const std::vector<double> at = times_of(log, "step");
-  ASSERT_EQ(static_cast<std::int64_t>(at.size()), f.steps);
-  ASSERT_GT(f.steps, 10);
-  ASSERT_LT(f.steps, 51);  // the mean is over all of them
-  const std::size_t a = row_at(log, at.front()), b = row_at(log, at.back());
-  const double duration = at.back() - at.front();
-  EXPECT_NEAR(f.mean_velocity_last_50[0], (x[b] - x[a]) / duration, 1e-6);
-  EXPECT_NEAR(f.mean_velocity_last_50[1], (y[b] - y[a]) / duration, 1e-6);
-  EXPECT_NEAR(f.mean_step_time, duration / static_cast<double>(f.steps - 1), 1e-6);
-  double goal_error = 0.0;
-  for (std::size_t k = at.size() - 10; k < at.size(); ++k) {
-    const std::size_t row = row_at(log, at[k]);
-    goal_error += std::hypot(x[row], y[row]) / 10.0;
-  }
-  EXPECT_NEAR(f.goal_error, goal_error, 1e-6);
-}
-
-TEST(ErrorFigure, IsRootMeanSquareAndLargestMagnitude) {
-  lab::ErrorFigure figure;
-  EXPECT_EQ(figure.rms(), 0.0);
-  figure.add(3.0);
-  figure.add(-4.0);
-  EXPECT_DOUBLE_EQ(figure.rms(), std::sqrt(12.5));
-  EXPECT_EQ(figure.max, 4.0);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // What a step is: 60 ms without ground contact, a rise of 2 cm, and then the foot that stands
 // alone.
-#include "lab/run/step_counter.h"
+#include "lab/figures/step_counter.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ class Steps : public testing::Test {
     for (int k = 0; k < ms; ++k) {
       if (k > 0 || right) height[0] = right_z;
       if (k > 0 || left) height[1] = left_z;
-      const StepEvent event = counter.observe(contact.data(), height.data());
+      const StepEvent event = counter.observe(kPeriod * tick++, contact.data(), height.data());
       if (event.foot >= 0) last = event;
       events += event.foot >= 0 ? 1 : 0;
     }
@@ -34,7 +34,7 @@ class Steps : public testing::Test {
   StepCounter counter{2, kPeriod};
   std::array<double, 2> height{};
   StepEvent last;
-  int events = 0;
+  int events = 0, tick = 0;
 };
 
 TEST_F(Steps, ASwungFootThatBecomesTheStanceFootIsAStep) {

@@ -1,11 +1,11 @@
 // Steps from contacts and foot heights; see step_counter.h.
-#include "lab/run/step_counter.h"
+#include "lab/figures/step_counter.h"
 
 #include <algorithm>
 
 namespace footfall::lab {
 
-StepEvent StepCounter::observe(const bool* contact, const double* height) noexcept {
+StepEvent StepCounter::observe(double time, const bool* contact, const double* height) noexcept {
   StepEvent event;
   int standing = 0;
   for (int f = 0; f < feet_; ++f) standing += contact[f] ? 1 : 0;
@@ -15,24 +15,25 @@ StepEvent StepCounter::observe(const bool* contact, const double* height) noexce
     if (first_) {
       foot.in_contact = contact[f];
       foot.lift_height = height[f];
+      foot.left_at = time;
     }
     if (!contact[f]) {
       if (foot.in_contact) {  // a bounce after touchdown keeps the step that is pending
         foot.in_contact = false;
-        foot.air_ticks = 0;
+        foot.left_at = time;
         foot.lift_height = height[f];
         foot.rise = 0.0;
       }
-      ++foot.air_ticks;
-      if (foot.air_ticks * period_ >= kMinFlight) foot.pending = false;
+      if (time + 1.5 * period_ - foot.left_at >= kMinFlight) foot.pending = false;
       foot.rise = std::max(foot.rise, height[f] - foot.lift_height);
     } else if (!foot.in_contact) {
       foot.in_contact = true;
       // Half a period of tolerance: 60 ms is a whole number of ticks at most rates.
-      const bool swung = (foot.air_ticks + 0.5) * period_ >= kMinFlight && foot.rise >= kMinRise;
+      const double flight = time - foot.left_at;
+      const bool swung = flight + 0.5 * period_ >= kMinFlight && foot.rise >= kMinRise;
       if (swung) {
         foot.pending = foot.landed = true;
-        foot.swing_time = foot.air_ticks * period_;
+        foot.swing_time = flight;
         foot.swing_rise = foot.rise;
       }
     }

@@ -1,5 +1,6 @@
 // Counts steps as docs/architecture.md defines them: a foot is without ground contact for at least
-// 60 ms, rises at least 2 cm, and then becomes the foot that stands alone. Fed once a tick.
+// 60 ms, rises at least 2 cm, and then becomes the foot that stands alone. Fed once a tick, or with
+// the rows of a log.
 #pragma once
 
 #include <array>
@@ -22,8 +23,8 @@ class StepCounter {
 
   StepCounter(int feet, double period) : feet_(feet), period_(period) {}
 
-  // contact: ground contact per foot; height: z of each foot's contact point, m.
-  StepEvent observe(const bool* contact, const double* height) noexcept;
+  // time: s; contact: ground contact per foot; height: z of each foot's contact point, m.
+  StepEvent observe(double time, const bool* contact, const double* height) noexcept;
 
   std::int64_t steps() const noexcept { return steps_; }
   // True in the tick in which this foot came down after a counted flight.
@@ -37,7 +38,7 @@ class StepCounter {
     bool in_contact = true;
     bool pending = false;  // came down after a real swing, the other foot still stands
     bool landed = false;
-    int air_ticks = 0;
+    double left_at = 0.0;  // s, first tick without contact
     double lift_height = 0.0;
     double rise = 0.0;
     double swing_time = 0.0, swing_rise = 0.0;  // of the last real swing

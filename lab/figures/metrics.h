@@ -1,16 +1,15 @@
-// The figures of one run, gathered tick by tick from the control loop; no clock, no physics.
+// The figures of one run, gathered tick by tick; no clock, no physics.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/tick/control_loop.h"
-#include "lab/run/step_counter.h"
+#include "lab/figures/step_counter.h"
+#include "lab/figures/tick_sample.h"
 
 namespace footfall::lab {
 
@@ -19,7 +18,8 @@ struct ErrorFigure {
   double sum_of_squares = 0.0;
   double max = 0.0;
   std::int64_t count = 0;
-  void add(double value) noexcept;
+  // ticks: how many had this value.
+  void add(double value, std::int64_t ticks = 1) noexcept;
   double rms() const noexcept;
 };
 
@@ -42,7 +42,7 @@ struct RunFigures {
   std::array<double, 2> mean_velocity_last_50{};  // m/s, world
   double worst_clearance = 0.0;                   // m, smallest rise of a swing foot
   double mean_step_time = 0.0;                    // s
-  struct Internal {
+  struct Internal {                               // N, in the behavior's convention
     ErrorFigure error;
     double reference = 0.0;
   };
@@ -56,29 +56,41 @@ inline constexpr double kShortRun = 4.0;      // s
 
 class RunMetrics {
  public:
-  explicit RunMetrics(const engine::ControlLoop& loop);
+  // period: of the tick, s. counted_from: everything counts from here on; none: as of a run that
+  // starts, see kSettledAfter.
+  RunMetrics(const SampleNames& names, double period, std::optional<double> counted_from = {});
+  RunMetrics(const RunMetrics&) = delete;
+  RunMetrics& operator=(const RunMetrics&) = delete;
 
-  // From now on another loop, which has taken over from the one before.
-  void go_on(const engine::ControlLoop& loop) noexcept { loop_ = &loop; }
-  // After each tick's compute(); goal: where it was told to be, m, world. Returns the step counted
-  // in this tick.
-  StepEvent observe(const std::array<double, 2>& goal) noexcept;
+  // From now on ticks of another behavior of the same robot, which has taken over.
+  void go_on(const SampleNames& names);
+  // One tick after the other. Returns the step counted in this tick.
+  StepEvent observe(const TickSample& tick) noexcept;
 
-  RunFigures figures(bool fell) const;
+  // time: the run's length, s.
+  RunFigures figures(double time, bool fell) const;
   const StepCounter& counter() const noexcept { return counter_; }
   // Duration of the last whole step, s; 0 before there are two.
   double last_step_duration() const noexcept { return last_step_duration_; }
 
  private:
-  void observe_errors() noexcept;
-  void add_errors(RunFigures& sums) noexcept;
-  void observe_placement() noexcept;
-  void observe_step(const StepEvent& event, const std::array<double, 2>& goal) noexcept;
+  void observe_errors(const TickSample& tick) noexcept;
+  void observe_placement(const TickSample& tick) noexcept;
+  void observe_step(const TickSample& tick) noexcept;
 
-  const engine::ControlLoop* loop_;
+  // Figures of which errors, placements and torques count from a time on.
+  struct Sums {
+    RunFigures figures;
+    std::vector<RunFigures::Internal*> internal;  // by TickSample::internal
+    void add_errors(const TickSample& tick, const std::array<double, 3>& rpy_reference,
+                    double height_reference) noexcept;
+    void add_placement(double error) noexcept;
+  };
+
+  std::size_t contacts_;
   StepCounter counter_;
-  RunFigures sums_;   // errors from kSettledAfter on
-  RunFigures whole_;  // errors from the beginning; nothing else
+  Sums settled_;  // from kSettledAfter on
+  Sums whole_;    // from the beginning; nothing but errors, placements and torques
   struct StepSample {
     double time;
     std::array<double, 2> com;
@@ -86,11 +98,10 @@ class RunMetrics {
   };
   std::vector<StepSample> recent_;  // ring of the last 51 steps
   std::size_t recent_head_ = 0;
-  double last_step_time_ = 0.0, last_step_duration_ = 0.0, first_step_time_ = 0.0;
+  double last_step_time_ = 0.0, last_step_duration_ = 0.0;
   std::array<double, 2> last_com_{};
-  std::array<double, 3> orientation_ref_{};  // last references of roll, pitch, yaw
-  double height_ref_ = 0.0;
-  bool have_height_ref_ = false;
+  std::array<double, 3> rpy_reference_{};  // the last ones that were in force
+  double height_reference_ = kAbsent;
   bool first_ = true;
 };
 
