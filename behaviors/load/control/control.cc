@@ -47,8 +47,7 @@ class ControlLoader {
       collect(0, id, active);
       std::sort(active.begin(), active.end());
       context_.control_states.push_back(active);
-      Draft draft = build_draft(context_, active, nullptr, -1);
-      draft.misspelt = std::ranges::any_of(active, [&](int s) { return misspells_stack(s); });
+      const Draft draft = build_draft(context_, active, nullptr, -1);
       ControlSpec control = compile(draft);
       if (draft.transition != nullptr) {
         control.transition = compile_transition(draft, active);
@@ -63,15 +62,6 @@ class ControlLoader {
  private:
   const StateInfo& state(int s) const { return behavior_.states[static_cast<std::size_t>(s)]; }
   int& count_of(int s) { return counts_[static_cast<std::size_t>(s)]; }
-
-  // Whether a state has an unknown key that is nearly `stack`.
-  bool misspells_stack(int s) const {
-    core::YamlNode unknown;
-    for (const core::YamlEntry& entry : context_.keys_of(s).entries) {
-      if (core::find_key(kStateKeys, entry.key) == nullptr) unknown.entries.push_back(entry);
-    }
-    return core::has_nearly(unknown, "stack");
-  }
 
   bool controls(int c) const { return controls_[static_cast<std::size_t>(c)]; }
 
