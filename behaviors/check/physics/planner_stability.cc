@@ -158,7 +158,7 @@ class PlannerCheck {
   // Steady steps on the spot, of one foot down for T1 and both for T2, in which the CoM keeps its
   // speed: at each switch it is half way between the feet, with the speed
   //   v = δ ω τ / (1 + ω τ T2),  τ = tanh(ω T1/2),
-  // from a foot at distance δ. Put into the law of foot_planner.h,
+  // from a foot at distance δ. Put into the law of behaviors/planners/foot_planner.h,
   //   δ = coth(ωt')/ω v + width_offset,  so that the steps are 2 δ = 2 width_offset / (1 - r) wide,
   //   r = τ / ((1 + ω τ T2) tanh(ωt')).
   // They are a tenth wider in runs of balance_best, whose loading foot is not counted in T2.
