@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/diagnostics/did_you_mean.h"
+#include "core/diagnostics/quantity_hint.h"
 
 namespace footfall::apps {
 namespace {
@@ -62,6 +63,21 @@ std::string unknown_word(const CLI::App& app, const std::vector<std::string>& wo
   return {};
 }
 
+// How to quote the value of an option that the shell has split, `--for 2 s`; empty if none was.
+std::string split_value(const std::vector<std::string>& words, std::size_t after_command) {
+  for (std::size_t k = after_command; k < words.size(); ++k) {
+    if (!words[k].starts_with("--")) continue;
+    const bool joined = words[k].find('=') != std::string::npos;  // --for=2 s
+    const std::size_t unit = joined ? k + 1 : k + 2;
+    if (unit >= words.size()) continue;
+    bool rest = false;
+    const std::string first = joined ? words[k] : words[k] + "=" + words[k + 1];
+    const std::string hint = core::split_argument_hint({first, words[unit]}, 1, rest);
+    if (!hint.empty()) return hint;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
@@ -79,7 +95,11 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error, int a
     name += " " + words[after++];
   }
   std::string text = unknown_word(*at, words, after);
-  if (text.empty()) text = error.what();
+  if (text.empty()) {
+    text = error.what();
+    const std::string hint = split_value(words, after);
+    if (!hint.empty()) text += ": " + hint;
+  }
   return fmt::format("footfall: error: {} (see {} --help)\n", text, name);
 }
 

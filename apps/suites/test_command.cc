@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using lab::Suite;
 
-constexpr std::size_t kReportsOfAScenario = 2;
+constexpr std::size_t kReportsOfBrokenRuns = 2;  // of a scenario
 
 struct TestOptions {
   std::vector<std::string> paths, labels;
@@ -158,20 +158,25 @@ class StatusLine {
   bool shown_;
 };
 
-void print_scenario(std::FILE* stream, const Suite& suite, std::size_t s) {
+void print_line(std::FILE* stream, const char* verdict, const Suite& suite, std::size_t s) {
   const lab::ScenarioResult& result = suite.results[s];
   const lab::SuiteScenario& scenario = suite.scenarios[s];
-  const char* verdict = result.passed ? "PASS" : result.complete ? "FAIL" : "STOP";
-  fmt::print(stream, "{}  {:<44} {:>4} seed{} {:>7.1f} s\n", verdict, scenario.name,
+  fmt::print(stream, "{:<5} {:<44} {:>4} seed{} {:>7.1f} s\n", verdict, scenario.name,
              scenario.seeds.size(), scenario.seeds.size() == 1 ? " " : "s", result.wall_time);
   std::fflush(stream);
 }
 
+void print_scenario(std::FILE* stream, const Suite& suite, std::size_t s) {
+  const lab::ScenarioResult& result = suite.results[s];
+  print_line(stream, result.passed ? "PASS" : result.complete ? "FAIL" : "STOP", suite, s);
+}
+
 void print_failures(std::FILE* stream, const Suite& suite) {
   for (std::size_t s = 0; s < suite.scenarios.size(); ++s) {
-    const std::string text = lab::failure_text(suite, s);
-    if (suite.results[s].passed || text.empty()) continue;
-    fmt::print(stream, "\n{}  ({})\n{}", suite.scenarios[s].name, suite.scenarios[s].path, text);
+    const std::vector<lab::SuiteFailure> failures = lab::failures_of(suite, s);
+    if (failures.empty()) continue;
+    fmt::print(stream, "\n{}  ({})\n", suite.scenarios[s].name, suite.scenarios[s].path);
+    for (const lab::SuiteFailure& failure : failures) std::fputs(failure.text.c_str(), stream);
   }
 }
 
@@ -246,21 +251,30 @@ bool agreed(std::size_t count) {
   return answer == 'y' || answer == 'Y';
 }
 
+// A run that only left its golden trace has not failed: that is what is to be blessed.
+void print_before_bless(const Suite& suite, const std::vector<lab::Blessing>& list) {
+  for (std::size_t s = 0; s < suite.scenarios.size(); ++s) {
+    const auto own = std::ranges::find(list, suite.scenarios[s].name, &lab::Blessing::scenario);
+    if (own == list.end()) {
+      print_scenario(stdout, suite, s);
+      continue;
+    }
+    if (!own->refused.empty()) print_line(stdout, suite.interrupted ? "STOP" : "FAIL", suite, s);
+    fmt::print("\n{}  ({})\n{}", own->scenario, own->to, own->text);
+    if (!own->refused.empty()) fmt::print("  not blessed: {}\n", own->refused);
+  }
+}
+
 // Shows the changes, asks, writes.
 int bless_traces(const TestOptions& options, const Suite& suite) {
   std::vector<lab::Blessing> list = lab::blessings(suite);
-  bool refused = suite.interrupted;
-  for (const lab::Blessing& blessing : list) {
-    fmt::print("\n{}  ({})\n{}", blessing.scenario, blessing.to, blessing.text);
-    if (blessing.refused.empty()) continue;
-    fmt::print("  not blessed: {}\n", blessing.refused);
-    refused = true;
-  }
-  std::erase_if(list, [](const lab::Blessing& b) { return !b.refused.empty(); });
+  print_before_bless(suite, list);
+  const auto refused = std::erase_if(list, [](const auto& b) { return !b.refused.empty(); });
   if (suite.interrupted) return kRobotFailed;
+  const int code = refused > 0 ? kRobotFailed : kGood;
   if (list.empty()) {
     fmt::print("\nno golden trace changes\n");
-    return refused ? kRobotFailed : kGood;
+    return code;
   }
   if (!options.yes && (::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0)) {
     throw InputError("--bless: error: nobody can be asked without a terminal: give --yes");
@@ -268,9 +282,9 @@ int bless_traces(const TestOptions& options, const Suite& suite) {
   if (!options.yes && !agreed(list.size())) return kRobotFailed;
   for (const lab::Blessing& blessing : list) {
     lab::bless(blessing);
-    fmt::print("  blessed      {}\n", blessing.to);
+    fmt::print("BLESS {:<44} {}\n", blessing.scenario, blessing.to);
   }
-  return refused ? kRobotFailed : kGood;
+  return code;
 }
 
 // A session owns its folder; shards share one.
@@ -300,6 +314,7 @@ int test(const TestOptions& options) {
   const StatusLine status;
   settings.progress = [&status](const lab::SuiteProgress& progress) { status.show(progress); };
   settings.scenario_done = [&](const Suite& all, std::size_t s) {
+    if (options.bless) return;  // what it is, the comparison of the traces says
     status.clear();
     print_scenario(stream, all, s);
   };
@@ -307,7 +322,7 @@ int test(const TestOptions& options) {
   lab::run_suite(suite, settings);
   status.clear();
   if (options.bless) return bless_traces(options, suite);
-  if (!options.no_report) lab::write_failure_reports(suite, settings, kReportsOfAScenario);
+  if (!options.no_report) lab::write_failure_reports(suite, settings, kReportsOfBrokenRuns);
   print_failures(stream, suite);
   print_total(stream, suite);
   if (!options.coverage.empty()) std::fputs(suite.coverage.text().c_str(), stream);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <tuple>
 
+#include "behaviors/check/structure/structure.h"
 #include "behaviors/compile.h"
 #include "behaviors/load/control/gains.h"
 #include "behaviors/load/steps.h"
@@ -44,7 +45,6 @@ std::string unknown_reason(const SaveSource& source, const std::string& name) {
 
 // Reason why a parameter cannot have these values; empty if it can.
 std::string reason_against(const ParameterInfo& info, const std::vector<double>& values) {
-  if (info.variable) return "it is a variable, which actions set: it is never saved";
   for (const double value : values) {
     if (!std::isfinite(value)) return fmt::format("{} is not a finite number", value);
     const bool negative_gain = info.gain && value < 0.0;
@@ -148,6 +148,20 @@ void note_bases(SavePlanner& planner, const std::string& path) {
   }
 }
 
+void note_variables(SavePlanner& planner) {
+  if (planner.plan.files.empty()) return;
+  for (const Wanted& wanted : planner.wanted) {
+    const SetAtStart found = set_at_start(planner.source.context, wanted.parameter);
+    if (found.state < 0) continue;
+    planner.plan.notes.push_back(fmt::format(
+        "{}:{}:{}: the entry of '{}' sets '{}' at the start of a run: its value in the file is "
+        "never used",
+        planner.path_of(found.mark), found.mark.line, found.mark.column,
+        planner.source.behavior.states[static_cast<std::size_t>(found.state)].path,
+        planner.info(wanted).name));
+  }
+}
+
 void make_plan(SavePlanner& planner, const std::string& path) {
   const auto place_of = [](const SavedPlace& place) {
     return std::tie(place.file, place.line, place.column);
@@ -166,6 +180,7 @@ void make_plan(SavePlanner& planner, const std::string& path) {
       reasons_against_result(planner.source, path, planner.plan.files, planner.wanted,
                              planner.allowed, planner.plan.notes);
   note_bases(planner, path);
+  note_variables(planner);
 }
 
 // Opens the file that gets all values; false and a refusal if it cannot be written.

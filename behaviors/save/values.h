@@ -44,8 +44,9 @@ struct SaveTarget {
 // change nothing.
 //
 // options.set is not applied: values of `--set` are not defined in a file and are written only if
-// they are among `values`. Refused, with the reason: unknown names, variables, values that are out
-// of range or given by an expression, texts shared by several values that would have to differ.
+// they are among `values`. Of a variable this is its first value. Refused, with the reason: unknown
+// names, values that are out of range or given by an expression, texts shared by several values
+// that would have to differ.
 // Every plan has been verified by loading it from memory: exactly these values bit for bit, every
 // other value of the file (or overlay) unchanged. Problems of the files are added to `diagnostics`;
 // the plan is then refused, too.

@@ -65,6 +65,15 @@ ScriptError split_message(const char* message) {
 int describe(lua_State* lua) {
   if (lua_type(lua, 1) == LUA_TSTRING) return 1;
   luaL_where(lua, 2);  // 1 is error() itself
+  // The words of the value's own `__tostring`, which may fail itself.
+  if (luaL_getmetafield(lua, 1, "__tostring") != LUA_TNIL) {
+    lua_pushvalue(lua, 1);
+    if (lua_pcall(lua, 1, 1, 0) == LUA_OK && lua_type(lua, -1) == LUA_TSTRING) {
+      lua_concat(lua, 2);
+      return 1;
+    }
+    lua_pop(lua, 1);
+  }
   lua_pushfstring(lua, "an error that is no text but a %s", luaL_typename(lua, 1));
   lua_concat(lua, 2);
   return 1;

@@ -34,16 +34,20 @@ constexpr auto kSigns = std::to_array<Replacement>({{"\u00b0", " deg"},
 
 // Words for units, in small letters.
 constexpr auto kWords = std::to_array<Replacement>(
-    {{"sec", "s"},       {"secs", "s"},     {"second", "s"},       {"seconds", "s"},
-     {"msec", "ms"},     {"msecs", "ms"},   {"millisecond", "ms"}, {"milliseconds", "ms"},
-     {"usec", "us"},     {"minute", "min"}, {"minutes", "min"},    {"mins", "min"},
-     {"hour", "h"},      {"hours", "h"},    {"hr", "h"},           {"meter", "m"},
-     {"meters", "m"},    {"metre", "m"},    {"metres", "m"},       {"mtr", "m"},
-     {"newton", "N"},    {"newtons", "N"},  {"kilogram", "kg"},    {"kilograms", "kg"},
-     {"kgs", "kg"},      {"gram", "g"},     {"grams", "g"},        {"degree", "deg"},
-     {"degrees", "deg"}, {"degs", "deg"},   {"grad", "deg"},       {"radian", "rad"},
-     {"radians", "rad"}, {"rads", "rad"},   {"percent", "%"},      {"pct", "%"},
-     {"hertz", "Hz"},    {"joule", "J"},    {"watt", "W"}});
+    {{"sec", "s"},       {"secs", "s"},       {"second", "s"},    {"seconds", "s"},
+     {"msec", "ms"},     {"msecs", "ms"},     {"usec", "us"},     {"minute", "min"},
+     {"minutes", "min"}, {"mins", "min"},     {"hour", "h"},      {"hours", "h"},
+     {"hr", "h"},        {"meter", "m"},      {"meters", "m"},    {"metre", "m"},
+     {"metres", "m"},    {"mtr", "m"},        {"newton", "N"},    {"newtons", "N"},
+     {"kilogram", "kg"}, {"kilograms", "kg"}, {"kgs", "kg"},      {"gram", "g"},
+     {"grams", "g"},     {"degree", "deg"},   {"degrees", "deg"}, {"degs", "deg"},
+     {"grad", "deg"},    {"radian", "rad"},   {"radians", "rad"}, {"rads", "rad"},
+     {"percent", "%"},   {"pct", "%"},        {"hertz", "Hz"},    {"joule", "J"},
+     {"watt", "W"},      {"joules", "J"},     {"watts", "W"}});
+
+// Words before those.
+constexpr auto kPrefixes = std::to_array<Replacement>(
+    {{"kilo", "k"}, {"centi", "c"}, {"milli", "m"}, {"micro", "u"}, {"mega", "M"}});
 
 bool is_word(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '%' ||
@@ -61,15 +65,26 @@ std::string with_our_signs(std::string text) {
   return text;
 }
 
+// `centimeters`: cm; empty if it is no word for a unit.
+std::string unit_of_word(std::string_view word, bool prefixed = true) {
+  for (const auto& [theirs, ours] : kWords) {
+    if (word == theirs) return std::string(ours);
+  }
+  for (const auto& [theirs, ours] : kPrefixes) {
+    if (!prefixed || !word.starts_with(theirs)) continue;
+    const std::string unit = unit_of_word(word.substr(theirs.size()), false);
+    if (!unit.empty() && parse_unit(std::string(ours) + unit)) return std::string(ours) + unit;
+  }
+  return {};
+}
+
 // The unit nearest to a word, the word itself if it is one, empty if none is near.
 std::string near_unit(const std::string& word) {
   if (parse_unit(word)) return word;
   std::string small = word;
   std::transform(small.begin(), small.end(), small.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& [theirs, ours] : kWords) {
-    if (small == theirs) return std::string(ours);
-  }
+  if (const std::string unit = unit_of_word(small); !unit.empty()) return unit;
   std::vector<std::string> names;
   for (const UnitInfo& unit : all_units()) names.emplace_back(unit.name);
   // Powers of ten apart in small letters only (`Mm`): the more usual one.

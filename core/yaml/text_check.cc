@@ -104,6 +104,17 @@ std::optional<Problem> problem_of(std::string_view line) {
                  fmt::format(" looks like a blank and is none: {}", character->advice)};
 }
 
+// The offset of a character behind a line's first word that looks like the ':' of a key.
+std::optional<std::size_t> false_colon(std::string_view line) {
+  const std::size_t word = line.find_first_not_of(" -");
+  if (word == std::string_view::npos) return std::nullopt;
+  const auto found = find_look_alike(line.substr(word));
+  if (!found || found->offset == 0 || found->advice != "type ':'") return std::nullopt;
+  const std::string_view key = line.substr(word, found->offset);
+  const bool name = std::all_of(key.begin(), key.end(), is_key_byte);
+  return name ? std::optional(word + found->offset) : std::nullopt;
+}
+
 // The indentation if the line opens a block of text (`doc: |`), -1 otherwise.
 int text_block(std::string_view line) {
   const std::size_t end = line.find_last_not_of(" \r0123456789+-");
@@ -195,6 +206,32 @@ bool check_text(std::string_view text, int file, Diagnostics& diagnostics) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return checker.report(diagnostics);
+}
+
+bool report_false_colon(std::string_view text, int failed_line, int file,
+                        Diagnostics& diagnostics) {
+  int number = 0, colon_line = 0;
+  std::size_t colon = 0;
+  for (std::size_t begin = 0; begin < text.size() && number < failed_line;) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (const auto found = false_colon(line)) {
+      colon_line = number;
+      colon = *found;
+    } else if (number < failed_line && line.find(": ") != std::string_view::npos) {
+      colon_line = 0;  // YAML has read a key since
+    }
+  }
+  if (colon_line == 0) return false;
+  std::string_view line = text;
+  for (int k = 1; k < colon_line; ++k) line.remove_prefix(line.find('\n') + 1);
+  const auto character = find_look_alike(line.substr(colon));
+  diagnostics.error(
+      {file, colon_line, static_cast<int>(colon) + 1}, "bad-text",
+      fmt::format("{} looks like a ':' and is none: {}", character->name, character->advice));
+  return true;
 }
 
 }  // namespace footfall::core

@@ -18,4 +18,8 @@ void make_line_ends_plain(std::string& text);
 // one a line, at most 20). True if there is none.
 bool check_text(std::string_view text, int file, Diagnostics& diagnostics);
 
+// Reports a key whose ':' only looks like one (id "bad-text"), in the line where YAML failed or in
+// the text that leads to it; false if there is none. Elsewhere such a text may be meant.
+bool report_false_colon(std::string_view text, int failed_line, int file, Diagnostics& diagnostics);
+
 }  // namespace footfall::core

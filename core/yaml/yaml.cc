@@ -334,6 +334,8 @@ YamlNode parse(std::string text, int file, Diagnostics& diagnostics) {
   } catch (const Stop&) {
     return {};
   } catch (const YAML::Exception& error) {
+    const int failed_line = error.mark.is_null() ? lines : std::min(error.mark.line + 1, lines);
+    if (report_false_colon(text, failed_line, file, diagnostics)) return {};
     if (!error.mark.is_null() && error.mark.line >= lines) {
       const bool in_quotes = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
       const Mark mark =

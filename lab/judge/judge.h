@@ -22,9 +22,7 @@ class ScenarioJudge {
   // After each tick's compute().
   void observe();
   // When the run has ended: one outcome for each expectation, in their order.
-  std::vector<ExpectationOutcome> finish(RunEnd end);
-  // Paths of the states that were active in the last tick that was looked at.
-  const std::string& last_state() const { return last_state_; }
+  std::vector<ExpectationOutcome> finish(const RunResult& result);
 
  private:
   // Where something was seen.
@@ -64,9 +62,10 @@ class ScenarioJudge {
   void observe_sequence(Judged& judged);
   void update(Running& running);
   std::string not_reached() const;
+  void finish_never(const Judged& judged, ExpectationOutcome& out) const;
   void finish_that(Judged& judged, ExpectationOutcome& out);
   void finish_sequence(const Judged& judged, ExpectationOutcome& out);
-  void finish_end(const Judged& judged, RunEnd end, ExpectationOutcome& out) const;
+  void finish_end(const Judged& judged, ExpectationOutcome& out) const;
   std::string names_of(const Place& place) const;
   void tell_place(const Place& place, ExpectationOutcome& out) const;
   void tell_values(const Judged& judged, ExpectationOutcome& out) const;
@@ -78,12 +77,14 @@ class ScenarioJudge {
   std::vector<Judged> judged_;
   std::int64_t tick_ = 0;
   Place last_;
-  std::string last_state_;
+  const RunResult* result_ = nullptr;  // while finish() runs
 };
 
 // Whether a run that ends so has gone as it should where nothing is said: to the end of its time,
 // or to a final state.
 bool is_good_end(RunEnd end);
+// How the run ended; of a fall or a fault: its criterion and state.
+std::string ending_text(const RunResult& result, double time);
 // The ends that an `end:` expectation may name, in the order of kScenarioEnds.
 RunEnd scenario_end(int word);
 

@@ -67,6 +67,29 @@ Json coverage_json(const ScenarioDescription& scenario, const RunCoverage& cover
 
 }  // namespace
 
+const char* failure_kind_name(ScenarioFailure::Kind kind) {
+  switch (kind) {
+    case ScenarioFailure::Kind::end:
+      return "end";
+    case ScenarioFailure::Kind::script:
+      return "script";
+    case ScenarioFailure::Kind::golden:
+      return "golden";
+  }
+  return "";
+}
+
+Json failures_json(const std::vector<ScenarioFailure>& failures) {
+  Json list = Json::array();
+  for (const ScenarioFailure& failure : failures) {
+    list.push_back({{"kind", failure_kind_name(failure.kind)},
+                    {"place", failure.place},
+                    {"text", failure.text},
+                    {"at_s", failure.at ? Json(*failure.at) : Json()}});
+  }
+  return list;
+}
+
 std::string place_in_file(const ScenarioDescription& scenario, core::Mark mark) {
   const auto file = static_cast<std::size_t>(mark.file);
   const bool known = mark.file >= 0 && file < scenario.files.size();
@@ -99,7 +122,7 @@ Json outcome_json(const ScenarioDescription& scenario, const ScenarioOutcome& ou
           {"path", scenario.path},
           {"seed", outcome.seed},
           {"passed", outcome.passed},
-          {"why", text_or_null(outcome.why)},
+          {"failures", failures_json(outcome.failures)},
           {"expectations", std::move(expectations)},
           {"coverage", coverage_json(scenario, outcome.coverage)},
           {"end", outcome.end},
@@ -118,7 +141,9 @@ std::string outcome_text(const ScenarioDescription& scenario, const ScenarioOutc
     if (e.at)
       text += fmt::format("          at {:.4f} s (tick {}) in {}\n", *e.at, *e.tick, e.state);
   }
-  if (!outcome.why.empty()) text += fmt::format("  FAILED  {}\n", outcome.why);
+  for (const ScenarioFailure& failure : outcome.failures) {
+    text += fmt::format("  FAILED  {}: {}\n", failure.place, failure.text);
+  }
   const auto count = [](const std::vector<bool>& bits) {
     return std::count(bits.begin(), bits.end(), true);
   };

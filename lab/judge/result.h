@@ -39,10 +39,26 @@ struct RunCoverage {
 RunCoverage coverage_of(const behaviors::Machine& machine, const behaviors::Chart& chart,
                         std::vector<bool> transitions_taken);
 
+// A failure that is none of an expectation's.
+struct ScenarioFailure {
+  enum class Kind : std::uint8_t {
+    end,     // a fall, a fault, or stopped by hand
+    script,  // an entry that never came or could not be done
+    golden,
+  };
+  Kind kind = Kind::end;
+  std::string place;         // FILE:LINE:COLUMN
+  std::string text;          // one line, with time and state
+  std::optional<double> at;  // s; nullopt: of no one time
+};
+const char* failure_kind_name(ScenarioFailure::Kind kind);
+// [{"kind", "place", "text", "at_s"}]
+nlohmann::ordered_json failures_json(const std::vector<ScenarioFailure>& failures);
+
 struct ScenarioOutcome {
   std::uint64_t seed = 0;
-  bool passed = false;  // every expectation, and nothing else went wrong
-  std::string why;      // what went wrong beside the expectations; empty: nothing
+  bool passed = false;                           // every expectation, and nothing else failed
+  std::vector<ScenarioFailure> failures;         // beside the expectations
   std::vector<ExpectationOutcome> expectations;  // one for each of the description
   RunCoverage coverage;
   std::string end;     // run_end_name
@@ -50,7 +66,7 @@ struct ScenarioOutcome {
   std::string log;     // path; empty: none
 };
 
-// {"scenario", "path", "seed", "passed", "why",
+// {"scenario", "path", "seed", "passed", "failures": [{"kind", "place", "text", "at_s"}],
 //  "expectations": [{"text", "place", "passed", "part", "value", "values": {NAME: number}, "at_s",
 //                    "tick", "state", "why"}],
 //  "coverage": {"states": [PATH, ...],

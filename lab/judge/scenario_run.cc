@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <stdexcept>
 
 #include "lab/judge/judge.h"
@@ -42,24 +43,48 @@ class Stage final : public RunObserver {
   std::optional<GoldenRecorder> recorder;
 };
 
-// What is wrong with the trace; empty: nothing.
-std::string judge_golden(const ScenarioDescription& scenario, const GoldenTrace& got) {
+// What is wrong with the trace.
+GoldenMismatch judge_golden(const ScenarioDescription& scenario, const GoldenTrace& got) {
   const GoldenSpec& spec = *scenario.golden;
   if (!std::filesystem::exists(spec.path)) {
-    return "no golden trace yet at " + spec.path + ": `footfall test --bless` writes it";
+    return {"no golden trace yet at " + spec.path + ": `footfall test --bless` writes it", {}};
   }
   try {
-    const std::string difference =
+    GoldenMismatch found =
         compare_golden(spec, scenario.behavior->signals, read_golden(spec.path), got);
-    return difference.empty() ? "" : "leaves the golden trace: " + difference;
+    if (!found.text.empty()) found.text = "leaves the golden trace: " + found.text;
+    return found;
   } catch (const std::runtime_error& error) {
-    return error.what();
+    return {error.what(), {}};
   }
 }
 
 bool names_an_end(const ScenarioDescription& scenario) {
   return std::ranges::any_of(scenario.expectations,
                              [](const Expectation& e) { return e.kind == Expectation::Kind::end; });
+}
+
+// Failures beside the expectations. After a bad end, entries that never came and the rest of the
+// trace are its consequences.
+std::vector<ScenarioFailure> failures_of(const ScenarioDescription& scenario, const Stage& stage,
+                                         const RunResult& result, double time, bool traced) {
+  using Kind = ScenarioFailure::Kind;
+  std::vector<ScenarioFailure> list = stage.cues.problems();
+  const bool stopped = result.end == RunEnd::stopped;
+  if (stopped || (!names_an_end(scenario) && !is_good_end(result.end))) {
+    list.push_back({Kind::end, scenario.path + ":1:1",
+                    stopped ? "it was stopped" : ending_text(result, time), time});
+    return list;
+  }
+  std::ranges::move(stage.cues.missed(), std::back_inserter(list));
+  if (traced) {
+    const GoldenMismatch found = judge_golden(scenario, stage.recorder->trace());
+    if (!found.text.empty()) {
+      list.push_back(
+          {Kind::golden, place_in_file(scenario, scenario.golden->mark), found.text, found.at});
+    }
+  }
+  return list;
 }
 
 }  // namespace
@@ -75,24 +100,14 @@ ScenarioRun run_scenario(const ScenarioDescription& scenario, std::uint64_t seed
   ScenarioOutcome& outcome = out.outcome;
   outcome.seed = seed;
   outcome.end = run_end_name(out.run.end);
-  outcome.expectations = stage.judge.finish(out.run.end);
+  outcome.expectations = stage.judge.finish(out.run);
   outcome.coverage = coverage_of(loop.machine(), loop.behavior(), stage.taken);
-  outcome.why = stage.cues.problem();
-  if (outcome.why.empty() && out.run.end == RunEnd::stopped) outcome.why = "it was stopped";
-  if (outcome.why.empty() && !names_an_end(scenario) && !is_good_end(out.run.end)) {
-    outcome.why = fmt::format("the run ended by {} at {:.3f} s, in {}", outcome.end, loop.time(),
-                              stage.judge.last_state());
-  }
-  if (outcome.why.empty()) outcome.why = stage.cues.missed();
-  if (stage.recorder) {
-    out.trace = stage.recorder->trace();
-    if (seed == scenario.seeds.front()) {
-      outcome.golden = scenario.golden->path;
-      if (outcome.why.empty()) outcome.why = judge_golden(scenario, out.trace);
-    }
-  }
-  outcome.passed =
-      outcome.why.empty() && std::ranges::all_of(outcome.expectations, &ExpectationOutcome::passed);
+  const bool traced = stage.recorder && seed == scenario.seeds.front();
+  outcome.failures = failures_of(scenario, stage, out.run, loop.time(), traced);
+  if (stage.recorder) out.trace = stage.recorder->trace();
+  if (traced) outcome.golden = scenario.golden->path;
+  outcome.passed = outcome.failures.empty() &&
+                   std::ranges::all_of(outcome.expectations, &ExpectationOutcome::passed);
   return out;
 }
 

@@ -114,14 +114,17 @@ void ScenarioCues::fire(const StepClock& steps, RunLog& log) {
   }
 }
 
-std::string ScenarioCues::missed() const {
+std::vector<ScenarioFailure> ScenarioCues::missed() const {
+  std::vector<ScenarioFailure> list;
   for (const Cue& cue : cues_) {
     if (cue.done || cue.entry->optional) continue;
-    return fmt::format(
-        "{}: the {} never came: the run ended at {:.3f} s (`optional: true` allows it)",
-        place_of(*cue.entry), what_of(*cue.entry), loop_.time());
+    list.push_back(
+        {ScenarioFailure::Kind::script, place_of(*cue.entry),
+         fmt::format("the {} never came: the run ended at {:.3f} s (`optional: true` allows it)",
+                     what_of(*cue.entry), loop_.time()),
+         std::nullopt});
   }
-  return {};
+  return list;
 }
 
 bool ScenarioCues::due(const Cue& cue, const StepClock& steps) const {
@@ -150,7 +153,7 @@ void ScenarioCues::act(const ScriptEntry& entry, RunLog& log) {
     log.event("push", body,
               fmt::format("{:g} N, {:g} s, {:g} rad", push.force, push.duration, push.direction));
     if (!hooks_.push(body, push.force, push.direction, push.duration)) {
-      problem_ = place_of(entry) + ": too many pushes at once";
+      add_problem(entry, "too many pushes at once");
     }
   }
   if (!entry.set.empty()) submit(entry, entry.set, engine::EditSource::set, log);
@@ -189,8 +192,7 @@ void ScenarioCues::call(const ScriptEntry& entry, RunLog& log) {
   const ScenarioLua::Result result = lua_->call(entry.call);
   for (const std::string& text : result.messages) log.event("log", text, "scenario");
   if (result.failed) {
-    problem_ =
-        place_of(entry) + ": " + (result.messages.empty() ? "it failed" : result.messages.back());
+    add_problem(entry, result.messages.empty() ? "it failed" : result.messages.back());
   } else if (!result.batch.values.empty() || !result.batch.events.empty()) {
     hand_in(entry, result.batch, log);
   }
@@ -199,7 +201,7 @@ void ScenarioCues::call(const ScriptEntry& entry, RunLog& log) {
 void ScenarioCues::hand_in(const ScriptEntry& entry, const engine::EditBatch& batch, RunLog& log) {
   const engine::EditReply reply = loop_.edits().submit(batch);
   if (reply.accepted()) return;
-  problem_ = fmt::format("{}: the edit was refused: {}", place_of(entry), reply.reasons.front());
+  add_problem(entry, "the edit was refused: " + reply.reasons.front());
   log.event("edit", "refused", reply.reasons.front());
 }
 
@@ -233,6 +235,13 @@ void ScenarioCues::end_lasting(RunLog& log) {
 
 std::int64_t ScenarioCues::ticks_of(double seconds) const {
   return behaviors::periods_of(seconds, loop_.behavior().rate_mhz);
+}
+
+void ScenarioCues::add_problem(const ScriptEntry& entry, const std::string& text) {
+  const std::string place = place_of(entry);
+  if (std::ranges::find(problems_, place, &ScenarioFailure::place) != problems_.end()) return;
+  problems_.push_back({ScenarioFailure::Kind::script, place,
+                       fmt::format("{}, at {:.3f} s", text, loop_.time()), loop_.time()});
 }
 
 std::string ScenarioCues::place_of(const ScriptEntry& entry) const {

@@ -12,6 +12,7 @@
 
 #include "engine/tick/control_loop.h"
 #include "lab/judge/lua.h"
+#include "lab/judge/result.h"
 #include "lab/run/run.h"
 #include "lab/run/run_log.h"
 #include "lab/scenario/description.h"
@@ -44,10 +45,10 @@ class ScenarioCues {
   void fire(const StepClock& steps, RunLog& log);
   // After each tick's compute(): events and states that entries wait for.
   void observe();
-  // What could not be done at its moment; empty: nothing.
-  const std::string& problem() const { return problem_; }
-  // The first entry whose moment never came, in words; empty: all came, or may be missing.
-  std::string missed() const;
+  // Entries that could not be done at their moment, each once.
+  const std::vector<ScenarioFailure>& problems() const { return problems_; }
+  // Entries whose moment never came, without the optional ones.
+  std::vector<ScenarioFailure> missed() const;
 
  private:
   struct Cue {
@@ -82,6 +83,7 @@ class ScenarioCues {
   void inject(InjectedFault fault, bool on);
   void end_lasting(RunLog& log);
   std::int64_t ticks_of(double seconds) const;
+  void add_problem(const ScriptEntry& entry, const std::string& text);
   std::string place_of(const ScriptEntry& entry) const;
 
   const ScenarioDescription& scenario_;
@@ -93,7 +95,7 @@ class ScenarioCues {
   std::vector<std::string> bodies_;
   std::array<int, 4> failing_{};    // by InjectedFault: entries that have it fail now
   std::optional<ScenarioLua> lua_;  // if some entry calls
-  std::string problem_;
+  std::vector<ScenarioFailure> problems_;
 };
 
 }  // namespace footfall::lab

@@ -31,9 +31,15 @@ std::string described(const Expectation& e) {
 bool is_good_end(RunEnd end) { return end == RunEnd::time || end == RunEnd::finished; }
 RunEnd scenario_end(int word) { return kEnds[at(word)]; }
 
-std::vector<ExpectationOutcome> ScenarioJudge::finish(RunEnd end) {
+std::string ending_text(const RunResult& result, double time) {
+  if (result.end == RunEnd::fall && result.cause) return "the robot fell: " + result.cause->text;
+  if (result.cause) return "the run was stopped: " + result.cause->text;
+  return fmt::format("the run ended by {} at {:.3f} s", run_end_name(result.end), time);
+}
+
+std::vector<ExpectationOutcome> ScenarioJudge::finish(const RunResult& result) {
   std::vector<ExpectationOutcome> outcomes;
-  last_state_ = names_of(last_);
+  result_ = &result;
   for (Judged& judged : judged_) {
     const Expectation& expectation = *judged.expectation;
     ExpectationOutcome& out = outcomes.emplace_back();
@@ -45,21 +51,13 @@ std::vector<ExpectationOutcome> ScenarioJudge::finish(RunEnd end) {
         finish_that(judged, out);
         break;
       case Expectation::Kind::never:
-        out.passed = judged.judged && !judged.decided;
-        if (out.passed) break;
-        if (!judged.judged) {
-          out.why = not_reached();
-          break;
-        }
-        out.why = "it held";
-        tell_place(judged.place, out);
-        tell_values(judged, out);
+        finish_never(judged, out);
         break;
       case Expectation::Kind::sequence:
         finish_sequence(judged, out);
         break;
       case Expectation::Kind::end:
-        finish_end(judged, end, out);
+        finish_end(judged, out);
         break;
     }
   }
@@ -67,7 +65,24 @@ std::vector<ExpectationOutcome> ScenarioJudge::finish(RunEnd end) {
 }
 
 std::string ScenarioJudge::not_reached() const {
-  return fmt::format("the run ended at {:.3f} s, before it could be judged", loop_.time());
+  const std::string why = result_->cause ? ending_text(*result_, loop_.time())
+                                         : fmt::format("the run ended at {:.3f} s", loop_.time());
+  return why + ", before it could be judged";
+}
+
+// A fall or a fault decides what its tick did: the states that it leads to are consequences.
+void ScenarioJudge::finish_never(const Judged& judged, ExpectationOutcome& out) const {
+  out.passed = judged.judged && !judged.decided;
+  if (out.passed) return;
+  if (!judged.judged) {
+    out.why = not_reached();
+    return;
+  }
+  const bool at_the_end = result_->cause && judged.place.tick == last_.tick;
+  out.why =
+      at_the_end ? "it became so when " + ending_text(*result_, loop_.time()) : "it became so";
+  tell_place(judged.place, out);
+  tell_values(judged, out);
 }
 
 void ScenarioJudge::finish_that(Judged& judged, ExpectationOutcome& out) {
@@ -133,12 +148,15 @@ void ScenarioJudge::finish_sequence(const Judged& judged, ExpectationOutcome& ou
                       : fmt::format("'{}' was not entered after '{}'", path(next), path(next - 1));
 }
 
-void ScenarioJudge::finish_end(const Judged& judged, RunEnd end, ExpectationOutcome& out) const {
+void ScenarioJudge::finish_end(const Judged& judged, ExpectationOutcome& out) const {
   const std::vector<int>& ends = judged.expectation->ends;
+  const RunEnd end = result_->end;
   out.passed = std::ranges::any_of(ends, [&](int word) { return scenario_end(word) == end; });
   out.value = run_end_name(end);
-  if (!out.passed)
-    out.why = fmt::format("the run ended by {} at {:.3f} s", run_end_name(end), loop_.time());
+  if (!out.passed) {
+    out.why = ending_text(*result_, loop_.time());
+    out.at = loop_.time();
+  }
 }
 
 void ScenarioJudge::tell_place(const Place& place, ExpectationOutcome& out) const {

@@ -58,8 +58,9 @@ std::string judge_fall(const ControlLoop& loop, EndCause& cause) {
   if (fall.low) {
     measured("height", fall.height, fall.height_limit, "m");
     return fmt::format(
-        "torso {:.3f} m above the lowest foot, below {:.0f} % of its standing height", fall.height,
-        loop.behavior().robot.height_limit * 100.0);
+        "torso {:.3f} m above the lowest foot, below the limit {:.3f} m ({:.0f} % of its standing "
+        "height)",
+        fall.height, fall.height_limit, loop.behavior().robot.height_limit * 100.0);
   }
   if (fall.tilted) {
     measured("tilt", fall.tilt, fall.tilt_limit, "rad");

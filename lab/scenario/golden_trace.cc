@@ -95,12 +95,14 @@ void write_golden(const std::string& path, const GoldenSpec& spec, const GoldenT
   core::write_whole_file(path, text);
 }
 
-std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,
-                           const GoldenTrace& expected, const GoldenTrace& got) {
+GoldenMismatch compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,
+                              const GoldenTrace& expected, const GoldenTrace& got) {
   std::vector<std::size_t> column;  // column in the expected trace, by signal of this trace
   for (const std::string& name : got.signals) {
     const auto found = std::ranges::find(expected.signals, name);
-    if (found == expected.signals.end()) return fmt::format("the trace has no signal '{}'", name);
+    if (found == expected.signals.end()) {
+      return {fmt::format("the trace has no signal '{}'", name), std::nullopt};
+    }
     column.push_back(static_cast<std::size_t>(found - expected.signals.begin()));
   }
   const std::size_t rows = std::min(expected.rows.size(), got.rows.size());
@@ -108,8 +110,9 @@ std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& sign
     const GoldenRow& want = expected.rows[r];
     const GoldenRow& have = got.rows[r];
     if (std::abs(want.time - have.time) > 0.5 / spec.rate) {
-      return fmt::format("row {} of the trace is of {:.4f} s, the run's of {:.4f} s: another rate",
-                         r + 1, want.time, have.time);
+      return {fmt::format("row {} of the trace is of {:.4f} s, the run's of {:.4f} s: another rate",
+                          r + 1, want.time, have.time),
+              std::nullopt};
     }
     for (std::size_t k = 0; k < have.values.size(); ++k) {
       const double a = have.values[k], b = want.values[column[k]];
@@ -118,15 +121,17 @@ std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& sign
       // Tolerate the rounding of the file, too.
       if (std::abs(a - b) <= tolerance + 0.5 * std::pow(10.0, -decimals(tolerance))) continue;
       const std::string unit = core::unit_text(signals.info(spec.signals[k].signal).dimension);
-      return fmt::format("{} at {:.4f} s in {}: got {}, expected {} (in {}), tolerance {}",
-                         got.signals[k], have.time, have.state, shown(a, unit), shown(b, unit),
-                         want.state, shown(tolerance, unit));
+      return {fmt::format("{} at {:.4f} s in {}: got {}, expected {} (in {}), tolerance {}",
+                          got.signals[k], have.time, have.state, shown(a, unit), shown(b, unit),
+                          want.state, shown(tolerance, unit)),
+              have.time};
     }
   }
-  if (expected.rows.size() == got.rows.size()) return "";
+  if (expected.rows.size() == got.rows.size()) return {};
   const auto end = [](const GoldenTrace& t) { return t.rows.empty() ? 0.0 : t.rows.back().time; };
-  return fmt::format("the run's trace ends at {:.3f} s, the golden one at {:.3f} s", end(got),
-                     end(expected));
+  return {fmt::format("the run's trace ends at {:.3f} s, the golden one at {:.3f} s", end(got),
+                      end(expected)),
+          std::min(end(got), end(expected))};
 }
 
 GoldenRecorder::GoldenRecorder(const GoldenSpec& spec, const engine::ControlLoop& loop)

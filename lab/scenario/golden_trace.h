@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,11 +29,14 @@ GoldenTrace read_golden(const std::string& path);
 // std::runtime_error if the file cannot be written.
 void write_golden(const std::string& path, const GoldenSpec& spec, const GoldenTrace& trace);
 
-// Describes the first value beyond its tolerance: signal, time, state, actual and expected value;
-// empty if there is none. Signals that only one of the two has and a different length are
-// differences, too.
-std::string compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,
-                           const GoldenTrace& expected, const GoldenTrace& got);
+// The first value beyond its tolerance: signal, time, state, actual and expected value.
+struct GoldenMismatch {
+  std::string text;          // empty: the traces agree
+  std::optional<double> at;  // s
+};
+// Signals that only one of the two has and a different length are mismatches, too.
+GoldenMismatch compare_golden(const GoldenSpec& spec, const core::SignalTable& signals,
+                              const GoldenTrace& expected, const GoldenTrace& got);
 
 // Records the trace of a run, after each tick's compute().
 class GoldenRecorder {

@@ -80,8 +80,10 @@ std::string objection(const SuiteRun& run) {
   for (const Observation& seen : run.observations) {
     if (!seen.passed) return "an expectation did not hold in it";
   }
-  if (run.verdict == Verdict::passed) return "";
-  const bool whole = run.verdict == Verdict::failed && (run.end == "time" || run.end == "finished");
+  for (const ScenarioFailure& failure : run.failures) {
+    if (failure.kind != ScenarioFailure::Kind::golden) return failure.text;
+  }
+  const bool whole = run.verdict == Verdict::passed || run.verdict == Verdict::failed;
   return whole ? "" : fmt::format("{}: {}", verdict_name(run.verdict), run.why);
 }
 

@@ -70,6 +70,7 @@ SuiteScenario load_one(const std::string& path, const std::vector<std::string>& 
   const std::string behavior = fs::path(scenario.behavior_path).lexically_normal().string();
   out.map = std::make_shared<CoverageMap>(
       coverage_map(*scenario.behavior, behavior, scenario.behavior_files));
+  out.scripted = !scenario.script.empty();
   if (scenario.golden) out.golden = scenario.golden->path;
   return out;
 }

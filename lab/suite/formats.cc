@@ -14,68 +14,99 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// In attributes a plain newline would be read as a blank.
-std::string xml(const std::string& text) {
+// Escaped, with these ends of lines: in attributes a plain newline would be read as a blank.
+std::string xml(const std::string& text, const char* newline = "&#10;") {
   std::string out;
   const std::string shown = core::printable_lines(text);
   for (std::string_view rest = shown; !rest.empty();) {
     const std::size_t end = rest.find('\n');
     out += core::escape_html(rest.substr(0, end));
     if (end == std::string_view::npos) break;
-    out += "&#10;";
+    out += newline;
     rest.remove_prefix(end + 1);
   }
   return out;
 }
 
-// A `failure` or `error` element of a test case; nothing for an empty text.
-std::string test_case(const std::string& suite, const std::string& name, double seconds,
-                      const char* kind, const std::string& message, const std::string& text) {
-  std::string out = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"",
-                                xml(suite), xml(name), seconds);
-  if (kind == nullptr) return out + "/>\n";
-  return out + fmt::format(">\n      <{} message=\"{}\" type=\"{}\">{}</{}>\n    </testcase>\n",
-                           kind, xml(message), kind, xml(text), kind);
-}
-
 struct Counts {
-  std::size_t tests = 0, failures = 0, errors = 0;
+  std::size_t tests = 0, failures = 0, errors = 0, skipped = 0;
 };
 
-// The test case for the runs themselves: that they all ended normally.
-std::string runs_case(const Suite& suite, std::size_t s, Counts& counts) {
-  const SuiteScenario& scenario = suite.scenarios[s];
-  const ScenarioResult& result = suite.results[s];
-  ++counts.tests;
-  const char* kind = nullptr;
-  std::string message, text;
-  if (!scenario.errors.empty()) {
-    kind = "error";
-    message = "the scenario file is wrong";
-    text = scenario.errors;
-  } else if (!result.broken.empty()) {
-    kind = "error";
-    const SuiteRun& first = suite.runs[result.broken.front()];
-    message = fmt::format("seed {}: {}: {}", first.seed, verdict_name(first.verdict), first.why);
-    text = failure_text(suite, s);
-  } else if (!result.complete) {
-    kind = "error";
-    message = text = "interrupted";
+// A test case: passed if nothing of it failed.
+struct TestCase {
+  std::string name, place;
+  double seconds = 0.0;
+  std::vector<const SuiteFailure*> failures;
+  const char* skipped = nullptr;  // reason
+};
+
+// FILE:LINE:COLUMN, FILE:LINE or FILE as attributes.
+std::string place_attributes(const std::string& place) {
+  std::string file = place, line;
+  for (std::size_t end = file.rfind(':'); end != std::string::npos && end + 1 < file.size();
+       end = file.rfind(':')) {
+    const std::string number = file.substr(end + 1);
+    if (number.find_first_not_of("0123456789") != std::string::npos) break;
+    line = number;
+    file.resize(end);
   }
-  counts.errors += kind != nullptr ? 1U : 0U;
-  return test_case(scenario.name, "runs", result.wall_time, kind, message, text);
+  return fmt::format(" file=\"{}\"", xml(file)) +
+         (line.empty() ? "" : fmt::format(" line=\"{}\"", line));
 }
 
-std::string expectation_case(const Suite& suite, std::size_t s, std::size_t e, Counts& counts) {
-  const SuiteExpectation& expected = suite.scenarios[s].expectations[e];
-  const Judgement& judgement = suite.results[s].judgements[e];
-  const bool failed = !judgement.passed;
+std::string case_xml(const std::string& suite, const TestCase& test, Counts& counts) {
   ++counts.tests;
-  counts.failures += failed ? 1U : 0U;
-  const std::string message =
-      fmt::format("held in {} of {} runs ({})", judgement.held, judgement.of, expected.place);
-  return test_case(suite.scenarios[s].name, expected.text, 0.0, failed ? "failure" : nullptr,
-                   message, failure_text(suite, s));
+  const SuiteFailure* first = test.failures.empty() ? nullptr : test.failures.front();
+  std::string out = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"{}",
+                                xml(suite), xml(test.name), test.seconds,
+                                place_attributes(first != nullptr ? first->place : test.place));
+  if (first == nullptr && test.skipped == nullptr) return out + "/>\n";
+  if (first == nullptr) {
+    ++counts.skipped;
+    return out + fmt::format(">\n      <skipped message=\"{}\"/>\n    </testcase>\n", test.skipped);
+  }
+  ++(first->error ? counts.errors : counts.failures);
+  const char* kind = first->error ? "error" : "failure";
+  std::string message = first->message, text;
+  if (test.failures.size() > 1) message += fmt::format(" (and {} more)", test.failures.size() - 1);
+  for (const SuiteFailure* failure : test.failures) text += failure->text;
+  return out + fmt::format(">\n      <{} message=\"{}\" type=\"{}\">{}</{}>\n    </testcase>\n",
+                           kind, xml(message), xml(first->type), xml(text, "\n"), kind);
+}
+
+// The cases of a scenario: of what could not be run, of its runs beside the expectations, and of
+// each expectation.
+std::vector<TestCase> cases_of(const Suite& suite, std::size_t s,
+                               const std::vector<SuiteFailure>& failures) {
+  const SuiteScenario& scenario = suite.scenarios[s];
+  const char* skipped = has_result(suite, s) ? nullptr : "no run came to its end";
+  std::vector<TestCase> cases{{"runs", scenario.path, suite.results[s].wall_time, {}, nullptr}};
+  const auto add = [&](const std::string& name, const std::string& place) {
+    cases.push_back({name, place, 0.0, {}, skipped});
+  };
+  if (scenario.errors.empty()) add("end", scenario.path);
+  if (scenario.scripted) add("script", scenario.path);
+  if (!scenario.golden.empty()) add("golden", scenario.path);
+  const std::size_t first = cases.size();
+  for (const SuiteExpectation& expected : scenario.expectations) add(expected.text, expected.place);
+  for (const SuiteFailure& failure : failures) {
+    const auto own = std::ranges::find(cases, failure.type, &TestCase::name);
+    TestCase& test = failure.error                   ? cases.front()
+                     : failure.type == "expectation" ? cases[first + failure.expectation]
+                     : own == cases.end()            ? cases.front()
+                                                     : *own;
+    test.failures.push_back(&failure);
+  }
+  return cases;
+}
+
+SuiteFailure interrupted(const SuiteScenario& scenario) {
+  SuiteFailure failure;
+  failure.type = verdict_name(Verdict::stopped);
+  failure.error = true;
+  failure.place = scenario.path;
+  failure.message = "interrupted";
+  return failure;
 }
 
 std::string host_name() {
@@ -103,13 +134,15 @@ Json run_json(const Suite& suite, const SuiteRun& run) {
   const bool passed = run.verdict == Verdict::passed;
   Json out = {{"seed", run.seed}, {"verdict", verdict_name(run.verdict)}};
   out["why"] = run.why.empty() ? Json() : Json(run.why);
+  out["failures"] = failures_json(run.failures);
   out["expectations"] = observations_json(suite, run);
   out["wall_s"] = run.wall_time;
   out["cpu_s"] = run.cpu_time;
   out["rerun"] = rerun_command(suite, run);
   out["stderr"] = passed ? Json() : Json(run.error_tail);
   out["folder"] = passed ? Json() : Json(run.folder);
-  out["report"] = run.report.empty() ? Json() : Json(run.report);
+  out["reports"] = Json::array();
+  for (const RunReport& report : run.reports) out["reports"].push_back(report.page);
   return out;
 }
 
@@ -148,16 +181,19 @@ std::string junit_xml(const Suite& suite) {
   const std::string host = host_name();
   for (std::size_t s = 0; s < suite.scenarios.size(); ++s) {
     Counts counts;
-    std::string cases = runs_case(suite, s, counts);
-    for (std::size_t e = 0; e < suite.results[s].judgements.size(); ++e) {
-      cases += expectation_case(suite, s, e, counts);
+    std::vector<SuiteFailure> failures = failures_of(suite, s);
+    if (!suite.results[s].complete) failures.push_back(interrupted(suite.scenarios[s]));
+    std::string cases;
+    for (const TestCase& test : cases_of(suite, s, failures)) {
+      cases += case_xml(suite.scenarios[s].name, test, counts);
     }
     out += fmt::format(
         "  <testsuite id=\"{}\" package=\"footfall\" name=\"{}\" hostname=\"{}\" timestamp=\"{}\" "
-        "tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\">\n    <properties>\n"
+        "tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\">\n    "
+        "<properties>\n"
         "      <property name=\"file\" value=\"{}\"/>\n    </properties>\n",
         s, xml(suite.scenarios[s].name), xml(host), suite.started, counts.tests, counts.failures,
-        counts.errors, suite.results[s].wall_time, xml(suite.scenarios[s].path));
+        counts.errors, counts.skipped, suite.results[s].wall_time, xml(suite.scenarios[s].path));
     out += cases + "    <system-out/>\n    <system-err/>\n  </testsuite>\n";
   }
   return out + "</testsuites>\n";

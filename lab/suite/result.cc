@@ -62,28 +62,50 @@ std::string misfit(const nlohmann::json& object, const SuiteScenario& scenario,
   return "";
 }
 
+// nullopt if malformed.
+std::optional<ScenarioFailure> read_failure(const nlohmann::json& item) {
+  using Kind = ScenarioFailure::Kind;
+  if (!item.is_object()) return {};
+  ScenarioFailure out;
+  const std::string kind = text_at(item, "kind");
+  const auto kinds = {Kind::end, Kind::script, Kind::golden};
+  const auto found = std::ranges::find(kinds, kind, failure_kind_name);
+  if (found == kinds.end()) return {};
+  out.kind = *found;
+  out.place = text_at(item, "place");
+  out.text = text_at(item, "text");
+  out.at = number_of(item, "at_s");
+  return out;
+}
+
+void malformed(SuiteRun& run, const char* what) {
+  run.observations.clear();
+  run.failures.clear();
+  run.verdict = Verdict::bad_output;
+  run.why = what;
+}
+
 void read_object(const nlohmann::json& object, int exit_code, SuiteRun& run) {
   run.end = text_at(object, "end");
   bool all = true;
   for (const nlohmann::json& item : object["expectations"]) {
     const auto observation = read_observation(item);
-    if (!observation) {
-      run.observations.clear();
-      run.verdict = Verdict::bad_output;
-      run.why = "an expectation in its result is malformed";
-      return;
-    }
+    if (!observation) return malformed(run, "an expectation in its result is malformed");
     all = all && observation->passed;
     run.observations.push_back(*observation);
+  }
+  for (const nlohmann::json& item : object.value("failures", nlohmann::json::array())) {
+    const auto failure = read_failure(item);
+    if (!failure) return malformed(run, "a failure in its result is malformed");
+    run.failures.push_back(*failure);
   }
   const bool passed = object["passed"].get<bool>();
   run.verdict = passed ? Verdict::passed : Verdict::failed;
   if (passed && exit_code != 0) {
     run.verdict = Verdict::bad_output;
     run.why = fmt::format("its result is `passed`, its exit code {}", exit_code);
-  } else if (!passed && all) {
-    const std::string why = text_at(object, "why");
-    run.why = !why.empty() ? why : "the run ended by " + (run.end.empty() ? "failing" : run.end);
+  } else if (passed != (all && run.failures.empty())) {
+    malformed(run, "the verdict of its result is not that of its expectations and failures");
   }
 }
 
@@ -163,7 +185,7 @@ ScenarioResult judge(const Suite& suite, std::size_t scenario) {
       result.complete = false;
       continue;
     }
-    const bool by_expectation = run.verdict == Verdict::failed && run.why.empty();
+    const bool by_expectation = run.verdict == Verdict::failed && run.failures.empty();
     if (run.verdict != Verdict::passed && !by_expectation) result.broken.push_back(r);
     for (std::size_t e = 0; e < result.judgements.size(); ++e) {
       Judgement& judgement = result.judgements[e];

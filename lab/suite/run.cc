@@ -8,6 +8,7 @@
 #include <ctime>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "core/process/machine_error.h"
 #include "lab/run/utc_time.h"
@@ -19,8 +20,7 @@ namespace fs = std::filesystem;
 
 // A run slower than this hangs: simulation normally runs about ten times as fast as real time.
 constexpr double kTimeoutBase = 60.0, kTimeoutPerSecond = 3.0;
-constexpr double kReportTimeout = 120.0;                   // s
-constexpr double kReportBefore = 1.5, kReportAfter = 0.5;  // s before and after the failure
+constexpr double kReportTimeout = 120.0;  // s
 
 // The name converted to a folder name.
 std::string folder_name(std::string name) {
@@ -65,6 +65,25 @@ void remove_folder(const std::string& folder) {
 void remove_parent(const std::string& folder) {
   std::error_code ignored;
   fs::remove(fs::path(folder).parent_path(), ignored);
+}
+
+// The first page of a run is `report.html`; a further one has its moment in its name.
+std::string page_name(const SuiteRun& run, std::optional<double> moment) {
+  if (run.reports.empty()) return run.folder + "/report.html";
+  return run.folder +
+         (moment ? fmt::format("/report-{:.3f}s.html", *moment) : "/report-whole.html");
+}
+
+Command report_command(const SuiteSettings& settings, const SuiteRun& run,
+                       const RunReport& report) {
+  Command command{{settings.program, "report", run.folder, "--output", report.page},
+                  kReportTimeout};
+  if (report.moment) {
+    command.arguments.push_back(
+        fmt::format("--from={:.3f}s", std::max(*report.moment - kReportBefore, 0.0)));
+    command.arguments.push_back(fmt::format("--to={:.3f}s", *report.moment + kReportAfter));
+  }
+  return command;
 }
 
 // Counts finished runs and reports scenarios in order.
@@ -145,36 +164,37 @@ void run_suite(Suite& suite, const SuiteSettings& settings) {
   suite.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void write_failure_reports(Suite& suite, const SuiteSettings& settings, std::size_t each) {
+void write_failure_reports(Suite& suite, const SuiteSettings& settings, std::size_t broken) {
   std::vector<Command> commands;
-  std::vector<std::size_t> of;
-  std::vector<std::size_t> count(suite.scenarios.size());
-  for (std::size_t r = 0; r < suite.runs.size(); ++r) {
-    SuiteRun& run = suite.runs[r];
-    std::error_code ignored;
-    if (run.verdict == Verdict::passed || run.verdict == Verdict::stopped) continue;
-    if (suite.results[run.scenario].passed || !fs::exists(run.folder + "/log.mcap", ignored))
-      continue;
-    if (count[run.scenario]++ >= each) continue;
-    Command command{{settings.program, "report", run.folder}, kReportTimeout};
-    if (const auto moment = moment_of(run)) {
-      command.arguments.push_back(
-          fmt::format("--from={:.3f}s", std::max(*moment - kReportBefore, 0.0)));
-      command.arguments.push_back(fmt::format("--to={:.3f}s", *moment + kReportAfter));
+  std::vector<std::pair<SuiteRun*, std::size_t>> of;  // index into its reports
+  for (std::size_t s = 0; s < suite.scenarios.size(); ++s) {
+    std::size_t errors = 0;
+    for (const SuiteFailure& failure : failures_of(suite, s)) {
+      if (!failure.run || (failure.error && errors++ >= broken)) continue;
+      SuiteRun& run = suite.runs[*failure.run];
+      std::error_code ignored;
+      if (report_of(run, failure.moment) != nullptr ||
+          !fs::exists(run.folder + "/log.mcap", ignored))
+        continue;
+      run.reports.push_back({failure.moment, page_name(run, failure.moment)});
+      of.emplace_back(&run, run.reports.size() - 1);
+      commands.push_back(report_command(settings, run, run.reports.back()));
     }
-    commands.push_back(std::move(command));
-    of.push_back(r);
   }
   PoolSettings pool;
   pool.jobs = settings.jobs;
   pool.stop = settings.stop;
+  std::vector<bool> written(commands.size());
   pool.done = [&](std::size_t i, const ProcessResult& result) {
-    SuiteRun& run = suite.runs[of[i]];
     std::error_code ignored;
-    const std::string page = run.folder + "/report.html";
-    if (result.end == ProcessEnd::exited && fs::exists(page, ignored)) run.report = page;
+    const auto& [run, report] = of[i];
+    written[i] = result.end == ProcessEnd::exited && fs::exists(run->reports[report].page, ignored);
   };
   run_processes(commands, pool);
+  for (std::size_t i = of.size(); i-- > 0;) {
+    const auto& [run, report] = of[i];
+    if (!written[i]) run->reports.erase(run->reports.begin() + static_cast<std::ptrdiff_t>(report));
+  }
 }
 
 }  // namespace footfall::lab

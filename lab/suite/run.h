@@ -40,8 +40,8 @@ void read_result(const ProcessResult& result, const SuiteScenario& scenario, Sui
 // Judges the expectations over all runs of a scenario.
 ScenarioResult judge(const Suite& suite, std::size_t scenario);
 
-// Writes reports of the first failures of each scenario, for a window around the failure, also in
-// child processes: at most `each` per scenario.
-void write_failure_reports(Suite& suite, const SuiteSettings& settings, std::size_t each);
+// Writes a report page of the time around each failure, also in child processes; failures of a run
+// that are near each other share one. Of runs without a result at most `broken` a scenario.
+void write_failure_reports(Suite& suite, const SuiteSettings& settings, std::size_t broken);
 
 }  // namespace footfall::lab

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lab/judge/coverage.h"
+#include "lab/judge/result.h"
 
 namespace footfall::lab {
 
@@ -28,8 +29,9 @@ struct SuiteScenario {
   std::vector<std::uint64_t> seeds;
   double duration = 0.0;  // s of simulated time
   std::vector<SuiteExpectation> expectations;
-  std::string golden;  // path of the golden trace for the first seed; empty: none
-  std::string errors;  // load errors; if not empty, the scenario is not run
+  bool scripted = false;  // has a script
+  std::string golden;     // path of the golden trace for the first seed; empty: none
+  std::string errors;     // load errors; if not empty, the scenario is not run
   std::shared_ptr<const CoverageMap> map;  // coverage map of its behavior
 };
 
@@ -55,17 +57,24 @@ struct Observation {
   std::string why;
 };
 
+// The page of a run around one moment.
+struct RunReport {
+  std::optional<double> moment;  // s; nullopt: the whole run
+  std::string page;
+};
+
 struct SuiteRun {
   std::size_t scenario = 0;  // into Suite::scenarios
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::stopped;
   std::string end;                         // reason for the end of the run, as reported by it
-  std::string why;                         // reason for a failure other than an expectation's
+  std::string why;                         // why there is no result; empty if there is one
+  std::vector<ScenarioFailure> failures;   // of its result, beside the expectations
   std::string error_tail;                  // the last lines of stderr
   std::vector<Observation> observations;   // one for each expectation; empty without a result
   double wall_time = 0.0, cpu_time = 0.0;  // s
   std::string folder;                      // folder of its log
-  std::string report;                      // path of its report; empty: none
+  std::vector<RunReport> reports;
 };
 
 // Result of an expectation over all seeds.
@@ -79,7 +88,7 @@ struct ScenarioResult {
   bool passed = false;
   bool complete = false;              // all seeds were run
   std::vector<Judgement> judgements;  // one for each expectation
-  std::vector<std::size_t> broken;    // runs that crashed, hung, fell, ...; see SuiteRun::why
+  std::vector<std::size_t> broken;    // runs that crashed, hung, fell, left the golden trace, ...
   double wall_time = 0.0;             // s, sum over its runs
 };
 
@@ -93,16 +102,31 @@ struct Suite {
   bool interrupted = false;
 };
 
-// Failures with expected and actual values; a few lines, each with line end. Empty for a scenario
-// that passed.
-std::string failure_text(const Suite& suite, std::size_t scenario);
+// One failure of a scenario: of an expectation over all seeds, of all runs that failed alike beside
+// the expectations, or of one run that has no result.
+struct SuiteFailure {
+  std::string type;             // expectation, end, script, golden; of an error its Verdict's name
+  bool error = false;           // it could not be run, or not to its end
+  std::size_t expectation = 0;  // of type `expectation`
+  std::optional<std::size_t> run;  // the run that is described
+  std::optional<double> moment;    // of its failure, s
+  std::string place;               // FILE:LINE:COLUMN, or FILE
+  std::string message;             // one line
+  std::string text;  // with expected and actual values; a few lines, each with line end
+};
+std::vector<SuiteFailure> failures_of(const Suite& suite, std::size_t scenario);
+// Whether some run of a scenario has a result.
+bool has_result(const Suite& suite, std::size_t scenario);
+// The page that shows a run at `moment`; nullptr if there is none.
+const RunReport* report_of(const SuiteRun& run, std::optional<double> moment);
+// A page shows so much before and after its moment, s.
+constexpr double kReportBefore = 1.5, kReportAfter = 0.5;
 // The shell command that repeats one run.
 std::string rerun_command(const Suite& suite, const SuiteRun& run);
-// The time at which a run failed, s; nullopt if unknown.
-std::optional<double> moment_of(const SuiteRun& run);
 
-// JUnit XML: a test suite for each scenario, with a test case for the runs themselves and one for
-// each expectation over all seeds.
+// JUnit XML: a test suite for each scenario, with a test case for what could not be run (`runs`),
+// for the ends of the runs, the script and the golden trace, and for each expectation over all
+// seeds.
 std::string junit_xml(const Suite& suite);
 nlohmann::ordered_json suite_json(const Suite& suite);
 

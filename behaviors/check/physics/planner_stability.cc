@@ -1,4 +1,4 @@
-// Planners whose step-to-step map is unstable; see parts.h.
+// Planners whose step-to-step map is unstable, or whose steady steps are too wide; see parts.h.
 //
 // [Kim16] V-B with E1, E2 of docs/notation.md: from one change of support to the next, relative to
 // the goal, the CoM's state is multiplied by a matrix A' per axis of the heading frame
@@ -33,8 +33,10 @@ class PlannerCheck {
   void run() {
     for (std::size_t p = 0; p < context_.behavior.planners.size(); ++p) {
       const auto planner = static_cast<int>(p);
+      bool good = true;
       for (const Timing& timing : timings(planner)) {
-        if (!judge(planner, timing)) break;
+        good = good && judge(planner, timing);
+        good = good && !too_wide(planner, timing);
       }
     }
     context_.findings.settle(1);
@@ -44,6 +46,7 @@ class PlannerCheck {
   struct Timing {
     double step = 0.0;    // s
     double height = 0.0;  // m
+    double coast = 0.0;   // s of the step with both feet down
   };
   const Behavior& b() const { return context_.behavior; }
 
@@ -55,7 +58,9 @@ class PlannerCheck {
       if (invoke.planner != planner || invoke.stance < 0) continue;
       const auto ahead = values_.of(invoke.switch_in);
       if (!ahead || *ahead <= 0.0) continue;
-      found.push_back({*ahead + before(invoke), height(invoke)});
+      Timing timing{*ahead, height(invoke)};
+      add_time_before(invoke, timing);
+      found.push_back(timing);
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const Timing& a, const Timing& b) { return a.step > b.step; });
@@ -64,16 +69,19 @@ class PlannerCheck {
 
   // Time from the entry of the stride to that of the state that asks: sibling states that lead here
   // by a timer, up to one that asks the planner for the other foot.
-  double before(const InvokeInfo& invoke) const {
-    double time = 0.0;
+  void add_time_before(const InvokeInfo& invoke, Timing& timing) const {
     std::vector<int> visited = {invoke.state};
     for (int s = invoke.state;;) {
       double duration = 0.0;
       const int previous = timed_predecessor(s, duration);
       const bool known = std::find(visited.begin(), visited.end(), previous) != visited.end();
-      if (previous < 0 || known || plans_otherwise(previous, invoke)) return time;
+      if (previous < 0 || known || plans_otherwise(previous, invoke)) return;
       visited.push_back(previous);
-      time += duration;
+      timing.step += duration;
+      const ControlSpec* control = control_while(previous);
+      const bool both =
+          control != nullptr && (control->contacts.size() > 1 || control->transition >= 0);
+      if (both) timing.coast += duration;
       s = previous;
     }
   }
@@ -113,14 +121,18 @@ class PlannerCheck {
     }
     return measured;
   }
-  // Tasks of a configuration that contains the state.
-  std::vector<TaskSpec> tasks_while(int s) const {
+  // The control of a configuration that contains the state; nullptr if there is none.
+  const ControlSpec* control_while(int s) const {
     int sum = b().states[at(s)].control_weight;
     for (int p = b().states[at(s)].parent; p >= 0; p = b().states[at(p)].parent) {
       sum += b().states[at(p)].control_weight;
     }
-    if (sum >= static_cast<int>(b().controls.size())) return {};
-    const Range& range = b().controls[at(sum)].tasks;
+    return sum < static_cast<int>(b().controls.size()) ? &b().controls[at(sum)] : nullptr;
+  }
+  std::vector<TaskSpec> tasks_while(int s) const {
+    const ControlSpec* control = control_while(s);
+    if (control == nullptr) return {};
+    const Range& range = control->tasks;
     return {b().tasks.begin() + range.first, b().tasks.begin() + range.end()};
   }
 
@@ -140,6 +152,33 @@ class PlannerCheck {
         return false;
       }
     }
+    return true;
+  }
+
+  // Steady steps on the spot, of one foot down for T1 and both for T2, in which the CoM keeps its
+  // speed: at each switch it is half way between the feet, with the speed
+  //   v = δ ω τ / (1 + ω τ T2),  τ = tanh(ω T1/2),
+  // from a foot at distance δ. Put into the law of behaviors/planners/foot_planner.h,
+  //   δ = coth(ωt')/ω v + width_offset,  so that the steps are 2 δ = 2 width_offset / (1 - r) wide,
+  //   r = τ / ((1 + ω τ T2) tanh(ωt')).
+  // They are a tenth wider in runs of balance_best, whose loading foot is not counted in T2.
+  bool too_wide(int planner, const Timing& timing) {
+    const PlannerInfo& info = b().planners[at(planner)];
+    const FootPlannerSpec spec = spec_in_force(info, b().values);
+    if (spec.max_width <= 0.0) return false;
+    const double omega = std::sqrt(spec.gravity / timing.height);
+    const double tau = std::tanh(0.5 * omega * (timing.step - timing.coast));
+    const double ratio =
+        tau / ((1.0 + omega * tau * timing.coast) * std::tanh(omega * spec.reversal[1]));
+    const double width = 2.0 * spec.width_offset / (1.0 - ratio);
+    if (ratio >= 1.0 || width <= spec.max_width) return false;
+    context_.findings.add(
+        Severity::warning, info.mark, "out-of-reach", {},
+        fmt::format("planner '{}' steps {:.2g} m wide on the spot with width_offset {:g} m (step "
+                    "time T {:.3f} s, reversal {:g} ms), beyond its reach.y of {:g} m: every step "
+                    "is cut; here width_offset must be below {:.2g} m",
+                    info.name, width, spec.width_offset, timing.step, 1e3 * spec.reversal[1],
+                    spec.max_width, 0.5 * spec.max_width * (1.0 - ratio)));
     return true;
   }
 

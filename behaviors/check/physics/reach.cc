@@ -4,6 +4,8 @@
 // point on the ground; that distance depends only on the joints, not on the base orientation, and
 // is maximised over the joint limits. No false alarm on level ground: tilt, other tasks and other
 // feet only reduce the reachable height.
+// The height of a foot that is in the air, from a start on the ground: its rise above a contact
+// point is maximised in the same way, with the base upright where a task keeps it so.
 // Likewise the base can be above the CoM or a point by no more than a distance that depends on the
 // joints, at a tilt within the robot's limit: a height from which it is still below `limits.height`
 // is a fall.
@@ -12,9 +14,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "behaviors/check/physics/parts.h"
 
@@ -29,6 +33,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 // of a millimetre of it for legs of a few joints. One percent is added as tolerance.
 constexpr double kSlack = 1.01;
 constexpr int kSweeps = 20;
+constexpr double kKeptTilt = 0.1;  // rad, of a base whose roll and pitch are controlled
 
 class ReachCheck {
  public:
@@ -128,7 +133,10 @@ class ReachCheck {
       highest = std::min(highest, farthest(contact, point));
     }
     const bool com = point < 0;
-    const double lowest = com ? 0.0 : -highest;  // a point may be below the ground, in a ditch
+    const bool swings = in_the_air(control, point);
+    if (swings) highest = std::min(highest, highest_rise(control, point));
+    // Another point may be below the ground, in a ditch.
+    const double lowest = com || swings ? 0.0 : -highest;
     const auto found = outside(axis, lowest, highest);
     if (!found) {
       judge_fall(task, axis, highest);
@@ -136,11 +144,54 @@ class ReachCheck {
     }
     add(axis, "z",
         fmt::format("task '{}' asks for {} of {:.3g} m: {}", name(task),
-                    com ? "a centre of mass at a height" : "a point at a height", *found,
+                    com      ? "a centre of mass at a height"
+                    : swings ? "a foot at a height"
+                             : "a point at a height",
+                    *found,
                     *found < 0.0 ? "that is in the ground"
                                  : fmt::format("on {} it can be {:.3g} m at most",
                                                contacts_text(context_.behavior, control.contacts),
                                                highest)));
+  }
+
+  // Whether the point is that of a contact which does not hold.
+  bool in_the_air(const ControlSpec& control, int point) const {
+    return point >= 0 && point < static_cast<int>(context_.behavior.robot.contacts.size()) &&
+           std::ranges::find(control.contacts, point) == control.contacts.end();
+  }
+
+  // Whether tasks control both roll and pitch of the base.
+  bool keeps_upright(const ControlSpec& control) const {
+    std::array<bool, 2> kept{};
+    for (int k = control.tasks.first; k < control.tasks.end(); ++k) {
+      const TaskSpec& task = context_.behavior.tasks[static_cast<std::size_t>(k)];
+      if (tasks::info(task.type).subject != Subject::base_rotation) continue;
+      for (int a = task.axes.first; a < task.axes.end(); ++a) {
+        const int axis = context_.behavior.axes[static_cast<std::size_t>(a)].axis;
+        if (axis < 2) kept[static_cast<std::size_t>(axis)] = true;
+      }
+    }
+    return kept[0] && kept[1];
+  }
+
+  // How far a foot can be above the feet that hold, over the joints' limits and the base's tilt, m.
+  double highest_rise(const ControlSpec& control, int foot) {
+    const double tilt = keeps_upright(control) ? kKeptTilt : context_.behavior.robot.tilt_limit;
+    double highest = std::numeric_limits<double>::infinity();
+    for (const int contact : control.contacts) {
+      const auto key = std::make_tuple(contact, foot, tilt);
+      auto known = rises_.find(key);
+      if (known == rises_.end()) {
+        const double best = maximum([&](const model::State& state) {
+          context_.model.update(state);
+          return rise(context_.model.point_position(contact), context_.model.point_position(foot),
+                      tilt);
+        });
+        known = rises_.emplace(key, best + (kSlack - 1.0) * std::abs(best)).first;
+      }
+      highest = std::min(highest, known->second);
+    }
+    return highest;
   }
 
   void judge_fall(const TaskSpec& task, const AxisSpec& axis, double highest) {
@@ -164,40 +215,43 @@ class ReachCheck {
       return known->second;
     }
     const double tilt = context_.behavior.robot.tilt_limit;
-    double best = -1e9;
-    for (std::size_t k = 0; k < context_.postures.size(); k += 4) {
-      best = std::max(best, climb(context_.postures[k], [&](const model::State& state) {
-                        return base_over(state, point, tilt);
-                      }));
-    }
+    const double best = maximum([&](const model::State& state) {
+      context_.model.update(state);
+      return rise(point < 0 ? context_.model.com().position : context_.model.point_position(point),
+                  context_.model.state().p_WB, tilt);
+    });
     return base_above_[point] = best + (kSlack - 1.0) * std::abs(best);
   }
 
-  // The z component of base minus point, with the base turned in the best way by `tilt` at most.
-  double base_over(const model::State& state, int point, double tilt) {
-    context_.model.update(state);
-    const auto& p =
-        point < 0 ? context_.model.com().position : context_.model.point_position(point);
+  // How far `upper` is above `lower`, with the base turned in the best way from upright by `tilt`
+  // at most.
+  template <class Point>
+  double rise(const Point& lower, const Point& upper, double tilt) const {
     const auto& R = context_.model.R_WB();
-    std::array<double, 3> d{};  // from the base, world
-    for (std::size_t i = 0; i < 3; ++i) d[i] = p[i] - context_.model.state().p_WB[i];
-    const double down = -(R[2] * d[0] + R[5] * d[1] + R[8] * d[2]);  // along the base's own z
+    std::array<double, 3> d{};  // world
+    for (std::size_t i = 0; i < 3; ++i) d[i] = upper[i] - lower[i];
+    const double up = R[2] * d[0] + R[5] * d[1] + R[8] * d[2];  // along the base's own z
     const double length = std::hypot(d[0], d[1], d[2]);
     if (!(length > 0.0)) return 0.0;
-    const double angle = std::acos(std::clamp(down / length, -1.0, 1.0));
+    const double angle = std::acos(std::clamp(up / length, -1.0, 1.0));
     return length * std::cos(std::max(0.0, angle - tilt));
+  }
+
+  // The largest value over the joints' limits, from several postures.
+  double maximum(const std::function<double(const model::State&)>& size) {
+    double best = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < context_.postures.size(); k += 4) {
+      best = std::max(best, climb(context_.postures[k], size));
+    }
+    return best;
   }
 
   // Largest distance of the CoM (-1) or a point from a contact point over the joints' limits, m.
   double farthest(int contact, int point) {
     const auto key = std::make_pair(contact, point);
     if (const auto known = farthest_.find(key); known != farthest_.end()) return known->second;
-    double best = 0.0;
-    for (std::size_t k = 0; k < context_.postures.size(); k += 4) {
-      best = std::max(best, climb(context_.postures[k], [&](const model::State& state) {
-                        return distance(state, contact, point);
-                      }));
-    }
+    const double best =
+        maximum([&](const model::State& state) { return distance(state, contact, point); });
     return farthest_[key] = kSlack * best;
   }
 
@@ -237,7 +291,8 @@ class ReachCheck {
   PhysicsContext& context_;
   StaticValues values_;
   std::map<std::pair<int, int>, double> farthest_;
-  std::map<int, double> base_above_;  // by point
+  std::map<int, double> base_above_;                      // by point
+  std::map<std::tuple<int, int, double>, double> rises_;  // by contact, foot and tilt
 };
 
 }  // namespace

@@ -2,11 +2,14 @@
 // transitions without time and without change of a condition.
 //
 // A cycle without conditions is certain. Otherwise one condition, an expression of signals and
-// parameters, is assumed to be true, or false, throughout the tick; if the path depends on a
-// further condition, nothing is reported.
+// parameters, is assumed to be true, or false, throughout the tick, and every further one that
+// stands before a transition of the cycle to be false. Nothing is reported if these assumptions
+// could contradict each other, which conditions without common operands cannot.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "behaviors/check/structure/structure.h"
@@ -103,17 +106,62 @@ class LoopCheck {
     return false;
   }
 
-  // The event-less transition taken from a leaf without delay; -1: none, or uncertain.
-  int next_transition(int leaf, Assumption given) const {
+  // Whether both can have any value independently: they read no common operand.
+  bool independent(int a, int b) const {
+    if (a < 0 || b < 0) return true;
+    const ExpressionPool& pool = chart_.expressions;
+    const Expression& e = pool[transition(conditions_[at(a)]).guard];
+    for (int k = e.first; k < e.first + e.count; ++k) {
+      const Instruction& i = pool.code[at(k)];
+      const bool operand = i.op == Op::parameter || i.op == Op::signal || i.op == Op::time;
+      if (operand && reads(transition(conditions_[at(b)]).guard, i.op, i.index)) return false;
+    }
+    return true;
+  }
+
+  // The value of a guard in the tick that enters its state, whatever the signals and variables are:
+  // not a number is what is unknown. nullopt: uncertain.
+  std::optional<bool> at_entry(int t, int leaf) const {
+    const int guard = transition(t).guard;
+    if (transition(t).source != leaf || reads(guard, Op::in_state) || reads(guard, Op::time)) {
+      return std::nullopt;
+    }
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> values = context_.behavior.values;
+    for (const ParameterInfo& info : context_.behavior.parameters) {
+      if (info.variable) std::fill_n(values.begin() + info.slot, info.size, unknown);
+    }
+    const std::vector<double> signals(at(context_.behavior.signals.size()), unknown);
+    const std::vector<std::int64_t> entered(chart_.states.size(), 0);
+    EvaluationContext now;
+    now.parameters = values.data();
+    now.signals = signals.data();
+    now.entry_ticks = entered.data();
+    const double value = evaluate(chart_.expressions, guard, now);
+    return std::isfinite(value) ? std::optional(value != 0.0) : std::nullopt;
+  }
+
+  // The event-less transition taken from a leaf without delay, if the conditions before it that are
+  // neither known nor given are false (`denied`); -1: none, or uncertain.
+  int next_transition(int leaf, Assumption given, std::vector<int>* denied = nullptr) const {
     for (int s = leaf; s >= 0; s = state(s).parent) {
       const Range own = state(s).transitions;
       for (int t = own.first; t < own.end(); ++t) {
         const int condition = conditions_of_[at(t)];
         if (condition == kNever || waits_[at(t)] > 0) continue;
-        if (condition == kUnknown || waits_[at(t)] < 0) return -1;
+        if (waits_[at(t)] < 0) return -1;
         if (condition == kAlways) return t;
-        if (condition != given.condition) return -1;
-        if (given.holds) return t;
+        if (condition == kUnknown) {
+          const auto known = at_entry(t, leaf);
+          if (!known) return -1;
+          if (*known) return t;
+        } else if (condition == given.condition) {
+          if (given.holds) return t;
+        } else if (independent(condition, given.condition)) {
+          if (denied != nullptr) denied->push_back(condition);
+        } else {
+          return -1;
+        }
       }
     }
     return -1;
@@ -124,19 +172,49 @@ class LoopCheck {
     if (step.transition < 0) return step;
     const TransitionInfo& taken = transition(step.transition);
     if (taken.targets.count == 0 || taken.domain < 0) return step;
-    const int guard = guard_of(given);
+    int found = -1;
+    for (const int s : entry_.of(taken)) {
+      if (state(s).kind == StateKind::parallel || state(s).kind == StateKind::final) return step;
+      if (state(s).kind == StateKind::atomic) found = s;
+    }
+    if (!changes_on_the_way(leaf, taken, guard_of(given))) step.leaf = found;
+    return step;
+  }
+
+  // Whether the actions of a transition, or of what it exits and enters, may change the condition.
+  bool changes_on_the_way(int leaf, const TransitionInfo& taken, int guard) {
     bool changed = changes(taken.actions, guard);
     for (int s = leaf; s > taken.domain; s = state(s).parent) {
       changed = changed || changes(state(s).on_exit, guard);
     }
-    int found = -1;
-    for (const int s : entry_.of(taken)) {
-      changed = changed || changes(state(s).on_entry, guard);
-      if (state(s).kind == StateKind::parallel || state(s).kind == StateKind::final) return step;
-      if (state(s).kind == StateKind::atomic) found = s;
+    for (const int s : entry_.of(taken)) changed = changed || changes(state(s).on_entry, guard);
+    return changed;
+  }
+
+  // The conditions that must be false for a cycle, each once; nullopt if they may contradict each
+  // other or change on the way.
+  std::optional<std::vector<int>> denied_in(int start, Assumption given) {
+    std::vector<int> denied;
+    int leaf = start;
+    do {
+      leaf = next(leaf, given).leaf;
+      next_transition(leaf, given, &denied);
+    } while (leaf != start);
+    std::ranges::sort(denied);
+    const auto repeated = std::ranges::unique(denied);
+    denied.erase(repeated.begin(), repeated.end());
+    for (std::size_t a = 0; a < denied.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        if (!independent(denied[a], denied[b])) return std::nullopt;
+      }
+      do {
+        const Step step = next(leaf, given);
+        const int guard = transition(conditions_[at(denied[a])]).guard;
+        if (changes_on_the_way(leaf, transition(step.transition), guard)) return std::nullopt;
+        leaf = step.leaf;
+      } while (leaf != start);
     }
-    if (!changed) step.leaf = found;
-    return step;
+    return denied;
   }
 
   void follow_all(Assumption given) {
@@ -153,6 +231,8 @@ class LoopCheck {
   }
 
   void report_cycle(int start, Assumption given) {
+    const auto denied = denied_in(start, given);
+    if (!denied) return;
     std::string names = fmt::format("'{}'", state(start).path);
     bool in_region = false;
     int first = -1, leaf = start;
@@ -167,17 +247,30 @@ class LoopCheck {
     } while (leaf != start);
     if (!reported_.insert(first).second) return;
     // A pure statechart is only traced: there the loop is bounded, and no robot moves.
-    say(first, given.condition < 0 && !in_region && context_.behavior.has_robot,
+    say(first, given.condition < 0 && denied->empty() && !in_region && context_.behavior.has_robot,
         fmt::format("{} is a loop that takes no time{}: it needs an `after` or a condition that "
                     "ends it",
-                    names, condition_text(given)));
+                    names, assumed_text(given, *denied)));
   }
 
-  std::string condition_text(Assumption given) const {
-    if (given.condition < 0) return {};
-    const int t = conditions_[at(given.condition)];
+  std::string condition_text(int condition) const {
+    const int t = conditions_[at(condition)];
     const core::YamlNode& when = *transition_keys(context_, t).find("when");
-    return fmt::format(" {} '{}'", given.holds ? "while" : "unless", read_marked(when.scalar).text);
+    return "'" + read_marked(when.scalar).text + "'";
+  }
+
+  // while 'A' and not 'B' / unless 'A' or 'B'
+  std::string assumed_text(Assumption given, const std::vector<int>& denied) const {
+    std::string text;
+    if (given.condition >= 0) {
+      text = (given.holds ? " while " : " unless ") + condition_text(given.condition);
+    }
+    const bool holds = given.condition >= 0 && given.holds;
+    for (const int condition : denied) {
+      text += text.empty() ? " unless " : holds ? " and not " : " or ";
+      text += condition_text(condition);
+    }
+    return text;
   }
 
   // Actions without `to`: the state is not exited, so the condition does not change.

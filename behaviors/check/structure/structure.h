@@ -66,6 +66,14 @@ std::optional<std::int64_t> planned_ticks(const LoadContext& context, int expres
 // `file:line:column` of a mark, for a message that refers to a second place.
 std::string place_of(const LoadContext& context, core::Mark mark);
 
+// The entry action at the start of a run that sets a parameter: its value in the file is never
+// used.
+struct SetAtStart {
+  int state = -1;  // -1: there is none
+  core::Mark mark{};
+};
+SetAtStart set_at_start(const LoadContext& context, int parameter);
+
 // Findings by position. A template's text belongs to several states: a finding about the text must
 // hold for all of them.
 class Findings {

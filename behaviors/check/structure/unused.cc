@@ -120,16 +120,25 @@ void check_planners(LoadContext& context) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 // A value of --set that an entry at the start overwrites before anything reads it.
 void check_override(LoadContext& context, const std::string& name) {
   const Behavior& behavior = context.behavior;
   const int parameter = behavior.find_parameter_part(name).parameter;
-  if (parameter < 0 || !behavior.parameters[at(parameter)].variable) return;
+  if (parameter < 0) return;
+  const SetAtStart found = set_at_start(context, parameter);
+  if (found.state < 0) return;
+  context.warning(
+      found.mark, "unused",
+      fmt::format("--set {} changes nothing: the entry of '{}' sets '{}' here, at the start", name,
+                  behavior.states[at(found.state)].path, behavior.parameters[at(parameter)].name));
+}
+
+}  // namespace
+
+SetAtStart set_at_start(const LoadContext& context, int parameter) {
+  const Behavior& behavior = context.behavior;
   const ParameterInfo& info = behavior.parameters[at(parameter)];
+  if (!info.variable) return {};
   EntrySet entries(behavior);
   for (const int s : entries.of_start()) {
     const StateInfo& state = behavior.states[at(s)];
@@ -138,17 +147,11 @@ void check_override(LoadContext& context, const std::string& name) {
       const bool sets = action.kind == ActionKind::set && action.index >= info.slot &&
                         action.index < info.slot + info.size;
       const auto mark = context.set_marks.find(a);
-      if (!sets || mark == context.set_marks.end()) continue;
-      context.warning(mark->second, "unused",
-                      fmt::format("--set {} changes nothing: the entry of '{}' sets '{}' here, at "
-                                  "the start",
-                                  name, state.path, info.name));
-      return;
+      if (sets && mark != context.set_marks.end()) return {s, mark->second};
     }
   }
+  return {};
 }
-
-}  // namespace
 
 void check_unused(LoadContext& context) {
   for (const auto& [name, text] : context.options.set) check_override(context, name);

@@ -153,7 +153,7 @@ class ControlLoader {
   }
 
   void compile_contacts(const Draft& draft, ControlSpec& control) {
-    if (draft.contacts == nullptr && !draft.tasks.empty()) {
+    if (draft.contacts == nullptr && !draft.tasks.empty() && !draft.misspelt) {
       context_.warning(
           draft.mark, "no-contacts",
           "tasks without `contacts`: name the feet that hold, or write `contacts: []`");

@@ -17,6 +17,14 @@ bool parallel(const LoadContext& context, int a, int b) {
   return a != b && !context.behavior.is_descendant(a, b) && !context.behavior.is_descendant(b, a);
 }
 
+// Whether a state has an unknown key that is nearly `stack`.
+bool misspells_stack(const core::YamlNode& keys) {
+  return std::ranges::any_of(keys.entries, [](const core::YamlEntry& entry) {
+    return core::find_key(kStateKeys, entry.key) == nullptr &&
+           !core::nearest_name(entry.key, {"stack"}).empty();
+  });
+}
+
 void report_clash(LoadContext& context, core::Mark mark, const std::string& what, int a, int b) {
   const auto& states = context.behavior.states;
   context.error(mark, "parallel-conflict",
@@ -242,6 +250,7 @@ Draft build_draft(LoadContext& context, const std::vector<int>& active,
   for (const int s : active) {
     const core::YamlNode& keys = context.keys_of(s);
     lay_keys(context, draft, keys, s, "");
+    draft.misspelt = draft.misspelt || misspells_stack(keys);
     if (const auto* transition = keys.find("contact_transition"); transition && toward == nullptr) {
       if (draft.transition != nullptr && parallel(context, draft.transition_owner, s)) {
         report_clash(context, transition->mark, "`contact_transition`", draft.transition_owner, s);

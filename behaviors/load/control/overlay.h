@@ -49,6 +49,7 @@ struct Draft {
   std::vector<DraftItem> torque_loops;  // name: foot or group; the only key is `table`
   const core::YamlNode* transition = nullptr;
   int transition_owner = -1;
+  bool misspelt = false;  // the stack's key is: what is missing is a consequence
 };
 
 // Merges the control of these active states (document order). `toward` replaces the stack if not

@@ -215,6 +215,7 @@ void check_task_keys(LoadContext& context, const DraftItem& item, const TaskType
 std::optional<tasks::TaskType> read_type(LoadContext& context, const DraftItem& item,
                                          const Draft& draft) {
   const DraftKey* type_key = item.find("type");
+  if (type_key == nullptr && draft.misspelt) return std::nullopt;
   if (type_key == nullptr) {
     std::vector<std::string> names;
     for (const DraftItem& other : draft.tasks) {

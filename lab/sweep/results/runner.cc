@@ -37,16 +37,20 @@ void flatten(const nlohmann::json& json, const std::string& name, SweepResult& r
   }
 }
 
-// Why a scenario did not pass: its reported reason, else the first failed expectation.
+// Why a scenario did not pass: its first failure beside the expectations, else the first failed
+// expectation.
 std::string reason(const nlohmann::json& outcome) {
-  std::string why = text_at(outcome, "why");
+  const auto failures = outcome.find("failures");
+  if (failures != outcome.end() && failures->is_array() && !failures->empty()) {
+    return text_at(failures->front(), "text");
+  }
   const auto list = outcome.find("expectations");
-  if (!why.empty() || list == outcome.end() || !list->is_array()) return why;
+  if (list == outcome.end() || !list->is_array()) return "";
   for (const nlohmann::json& one : *list) {
     if (!one.is_object() || one.value("passed", true)) continue;
     return fmt::format("{}: {}", text_at(one, "text"), text_at(one, "why"));
   }
-  return why;
+  return "";
 }
 
 bool read_output(const std::string& out, int exit_code, SweepResult& result) {

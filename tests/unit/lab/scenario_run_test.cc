@@ -67,7 +67,9 @@ class ScenarioRunTest : public testing::Test {
     settings.contacts = static_cast<int>(behavior.robot.contacts.size());
     settings.period = behavior.robot.period_s();
     settings.base = {0.0, 0.0, behavior.robot.standing_height};
-    for (const auto& joint : behavior.robot.joints) settings.start.push_back(joint.posture);
+    for (const auto& joint : behavior.robot.joints) {
+      settings.start.push_back(joint.posture + (joint.name.ends_with("knee") ? bent_ : 0.0));
+    }
     hal::StubBackend stub(settings);
     hal::SensorFaults sensors(stub);
     engine::ControlLoop loop(behavior, sensors, {});
@@ -92,8 +94,19 @@ class ScenarioRunTest : public testing::Test {
     return run(lines + "expect:\n  - " + expectation + "\n").outcome.expectations.at(0);
   }
 
+  // `KIND FILE:LINE:COLUMN: TEXT`, a line each.
+  std::string failures(const ScenarioRun& done) {
+    std::string text;
+    for (const ScenarioFailure& failure : done.outcome.failures) {
+      text += std::string(failure_kind_name(failure.kind)) + " " +
+              std::filesystem::path(failure.place).filename().string() + ": " + failure.text + "\n";
+    }
+    return text;
+  }
+
   using Act = std::pair<std::int64_t, std::string>;
   std::string file_ = "laps.yaml";
+  double bent_ = 0.0;  // rad, knees beyond their posture at the start
   std::filesystem::path folder_;
   ScenarioDescription scenario_;
   std::vector<Act> acts_;
@@ -157,21 +170,21 @@ TEST_F(ScenarioRunTest, AFunctionOfLuaSeesTheRobotAndActsThroughTheDoor) {
           "  - in(a)\n"
           "  - $lap == 300 ms\n");
   for (const ExpectationOutcome& e : done.outcome.expectations) EXPECT_TRUE(e.passed) << e.text;
-  EXPECT_TRUE(done.outcome.passed) << done.outcome.why;
+  EXPECT_EQ(failures(done), "");
 }
 TEST_F(ScenarioRunTest, AFunctionOfLuaThatFailsFailsTheRun) {
   std::ofstream(folder_ / "s.lua") << "function bad()\n  footfall.set('lap', 100)\nend\n";
   const ScenarioRun done = run("scripts: [s.lua]\nscript: [{at: 100 ms, call: bad}]\n");
   EXPECT_FALSE(done.outcome.passed);
-  EXPECT_NE(done.outcome.why.find("s.yaml:5:10"), std::string::npos) << done.outcome.why;
-  EXPECT_NE(done.outcome.why.find("100 is outside the range of 'lap'"), std::string::npos)
-      << done.outcome.why;
+  EXPECT_NE(failures(done).find("script s.yaml:5:10: "), std::string::npos) << failures(done);
+  EXPECT_NE(failures(done).find("100 is outside the range of 'lap'"), std::string::npos)
+      << failures(done);
 }
 TEST_F(ScenarioRunTest, AFaultOfASensorIsReportedAndEnds) {
   const ScenarioRun done =
       run("script: [{at: 100 ms, fault: imu.dropout, for: 10 ms}]\n"
           "expect: [{that: in(limp), after: 100 ms, within: 1 ms}]\n");
-  EXPECT_TRUE(done.outcome.passed) << done.outcome.why;
+  EXPECT_EQ(failures(done), "");
   EXPECT_EQ(acts_, (std::vector<Act>{{150, "fails"}, {165, "works"}}));
   EXPECT_EQ(done.run.faults.of(core::Fault::imu_stale), 1);
 }
@@ -186,12 +199,47 @@ TEST_F(ScenarioRunTest, AnEntryThatNeverCameFailsTheRunUnlessItIsOptional) {
         "{at: 400 ms, fault: imu.dropout}", "{at: 400 ms, hold: torso}"}) {
     const ScenarioRun missed = run(std::string("script:\n  - ") + entry + "\n");
     EXPECT_FALSE(missed.outcome.passed) << entry;
-    EXPECT_NE(missed.outcome.why.find("s.yaml:5:5: the "), std::string::npos) << missed.outcome.why;
-    EXPECT_NE(missed.outcome.why.find(" never came: the run ended at 0.201 s"), std::string::npos)
-        << missed.outcome.why;
+    EXPECT_TRUE(failures(missed).starts_with("script s.yaml:5:5: the ")) << failures(missed);
+    EXPECT_NE(failures(missed).find(" never came: the run ended at 0.201 s"), std::string::npos)
+        << failures(missed);
     const std::string optional = std::string(entry).insert(1, "optional: true, ");
     EXPECT_TRUE(run("script:\n  - " + optional + "\n").outcome.passed) << optional;
   }
+}
+
+TEST_F(ScenarioRunTest, EachEntryThatNeverCameAndTheGoldenTraceAreFailuresOfTheirOwn) {
+  file_ = "short.yaml";  // over after 0.2 s
+  const ScenarioRun done =
+      run("script:\n"
+          "  - {at: 300 ms, raise: tapped}\n"
+          "  - {at: 100 ms, edit: {lap: 90 ms}}\n"
+          "  - {at: 400 ms, hold: torso}\n"
+          "golden: {tolerance: {joint.left_knee.position: 0.001 rad}}\n"
+          "expect: [time > 5 s]\n");
+  ASSERT_EQ(done.outcome.failures.size(), 3U) << failures(done);
+  const auto json = outcome_json(scenario_, done.outcome, nullptr)["failures"];
+  const std::string file = (folder_ / "s.yaml").string();
+  EXPECT_EQ(json[0]["kind"], "script");
+  EXPECT_EQ(json[0]["place"], file + ":5:5");
+  EXPECT_EQ(json[1]["place"], file + ":7:5");
+  EXPECT_EQ(json[2]["kind"], "golden");
+  EXPECT_EQ(json[2]["place"], file + ":8:9");
+}
+
+// The state that a fall leads to says nothing of the fall.
+TEST_F(ScenarioRunTest, AFallTellsItsCriterionAndStateAndWhatItBroughtAbout) {
+  bent_ = 1.0;  // the feet come too near to the torso
+  const ScenarioRun done = run("expect:\n  - {never: in(limp)}\n  - {that: in(b), within: 1 s}\n");
+  ASSERT_EQ(done.outcome.failures.size(), 1U) << failures(done);
+  EXPECT_EQ(done.outcome.failures[0].kind, ScenarioFailure::Kind::end);
+  EXPECT_TRUE(failures(done).starts_with("end s.yaml:1:1: the robot fell: torso "))
+      << failures(done);
+  EXPECT_NE(failures(done).find(" m above the lowest foot, below the limit "), std::string::npos)
+      << failures(done);
+  EXPECT_TRUE(failures(done).ends_with(" in a\n")) << failures(done);
+  const ExpectationOutcome& never = done.outcome.expectations[0];
+  EXPECT_FALSE(never.passed);
+  EXPECT_TRUE(never.why.starts_with("it became so when the robot fell: torso ")) << never.why;
 }
 
 TEST_F(ScenarioRunTest, AWindowThatTheRunDoesNotReachIsNotJudgedAsPassed) {
@@ -313,7 +361,7 @@ TEST_F(ScenarioRunTest, AGoldenTraceIsWrittenReadAndFollowed) {
       "golden: {tolerance: {joint.left_knee.position: 0.001 rad}, rate: 10 Hz}\n";
   const ScenarioRun first = run(golden);
   EXPECT_FALSE(first.outcome.passed);
-  EXPECT_NE(first.outcome.why.find("no golden trace yet"), std::string::npos);
+  EXPECT_NE(failures(first).find("no golden trace yet"), std::string::npos);
   const std::string path = (folder_ / "s.golden.csv").string();
   EXPECT_EQ(scenario_.golden->path, path);
   GoldenTrace trace = first.trace;
@@ -323,11 +371,11 @@ TEST_F(ScenarioRunTest, AGoldenTraceIsWrittenReadAndFollowed) {
   EXPECT_TRUE(run(golden).outcome.passed);
   trace.rows[3].values[0] += 0.002;
   write_golden(path, *scenario_.golden, trace);
-  const std::string why = run(golden).outcome.why;
+  const std::string why = failures(run(golden));
   EXPECT_NE(why.find("joint.left_knee.position at 0.3000 s in a: got "), std::string::npos) << why;
   EXPECT_TRUE(run(golden, 2).outcome.passed);  // another seed is not compared
   std::ofstream(path) << "time,state\n";
-  EXPECT_NE(run(golden).outcome.why.find(":1: error: expected the head"), std::string::npos);
+  EXPECT_NE(failures(run(golden)).find(":1: error: expected the head"), std::string::npos);
 }
 
 }  // namespace

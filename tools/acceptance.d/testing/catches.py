@@ -90,7 +90,8 @@ def judge(out):
         for one in scenario["runs"]:
             broken = [e for e in one.get("expectations") or [] if not e["passed"]]
             texts += [f"{scenario['name']}: {e['text']} [{e['state']}] {e['why']}" for e in broken]
-            if not broken and one["verdict"] != "passed":
+            texts += [f"{scenario['name']}: {f['kind']}: {f['text']}" for f in one["failures"]]
+            if not broken and not one["failures"] and one["verdict"] != "passed":
                 texts.append(f"{scenario['name']}: {one['verdict']}: {one['why']}")
         texts += [f"{scenario['name']}: {scenario['errors']}"] if scenario.get("errors") else []
     return texts or [f"exit {done.returncode}"]

@@ -24,6 +24,14 @@ class Help(Case):
                 self.assertEqual(result.returncode, 0)
                 self.assertIn("Example: footfall " + command, result.stdout)
 
+    def test_the_value_of_an_option_that_the_shell_has_split_is_told_to_be_quoted(self):
+        for arguments in (["run", "squat.yaml", "--for", "2", "s"], ["run", "--for=2", "s", "squat.yaml"]):
+            with self.subTest(arguments):
+                result = self.footfall(*arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn('quote it: "--for=2 s"', result.stderr)
+        self.assertNotIn("quote it", self.footfall("run", "a.yaml", "--seed", "2", "b.yaml").stderr)
+
     def test_signals_of_a_filter_parameters_and_gains(self):
         result = self.footfall("signals", "balance", "gains.single.*.kp")
         self.assertEqual(len(result.stdout.splitlines()), 3)

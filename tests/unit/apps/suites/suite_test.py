@@ -85,7 +85,7 @@ class Children(Case):
         self.assertEqual(result.returncode, 3)
         self.assertIn("SIGSEGV", result.stdout)
         self.assertIn("about to crash", result.stdout)
-        self.assertIn("the run ended by fall", result.stdout)
+        self.assertIn("the robot fell: torso 0.5 m, at 1.000 s in a", result.stdout)
 
     def test_a_failure_says_what_was_expected_what_happened_when_where_and_how_to_rerun(self):
         path = self.scenario("tilts", "fail@102", "100..103")
@@ -102,9 +102,10 @@ class Children(Case):
         self.scenario("enough", "fail@2", "1..4", expect=[share])
         self.scenario("too_few", "fail@2,3", "1..4", expect=[share])
         self.scenario("crashes", "crash@2", "1..4", expect=[share])
+        self.scenario("falls", "fall_too@2", "1..4", expect=[share])
         self.footfall()
         passed = {s["name"]: s["passed"] for s in self.session["scenarios"]}
-        self.assertEqual(passed, {"crashes": False, "enough": True, "too_few": False})
+        self.assertEqual(passed, {"crashes": False, "enough": True, "falls": False, "too_few": False})
 
     def test_a_run_that_passes_does_not_take_the_folder_away_from_one_that_begins(self):
         self.scenario("begins", "late@2", "1..2")
@@ -224,6 +225,18 @@ class Bless(Case):
         self.assertEqual(self.golden.read_text(), "time,state,com.pos.z\n0.0,a,0.0\n0.5,a,0.5\n")
         self.assertIn("no golden trace changes", self.footfall("--bless").stdout)
 
+    def test_what_is_blessed_is_not_told_as_a_failure(self):
+        self.trace("drift")
+        result = self.footfall("--bless", "--yes")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"(?m)^BLESS traced +tests/runs/regression/traced.golden.csv$")
+        self.assertNotIn("FAIL", result.stdout)
+        self.trace("fall")
+        result = self.footfall("--bless", "--yes")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stdout, r"(?m)^FAIL  traced ")
+        self.assertIn("not blessed: the robot fell", result.stdout)
+
     def test_the_largest_difference_is_shown_and_when(self):
         self.footfall("--bless", "--yes")
         self.trace("slow")
@@ -268,8 +281,52 @@ class Formats(Case):
                 self.assertLessEqual(len(list(case)), 1)
         bad = root.find("testsuite[@name='bad']")
         self.assertEqual([c.get("name") for c in bad.findall("testcase")],
-                         ["runs", "time >= 0 s", "time < 1 s and time > 0 s"])
+                         ["runs", "end", "time >= 0 s", "time < 1 s and time > 0 s"])
         self.assertIn("about to crash ?? <&>", bad.find("testcase/error").text)
+
+    def cases(self, name):
+        self.footfall("--junit", "junit.xml", "--filter", name)
+        suite = ElementTree.parse(self.folder / "junit.xml").getroot().find("testsuite")
+        return {case.get("name"): case for case in suite.findall("testcase")}
+
+    def test_each_failure_is_in_junit_once_with_its_own_file_and_line(self):
+        path = self.scenario("many", "twice", expect=("time >= 0 s", "time < 1 s"), more="script: [{at: 500 ms, raise: go}]\n")
+        cases = self.cases("many")
+        self.assertEqual({name: case.get("line") for name, case in cases.items() if case.find("failure") is not None},
+                         {"script": "10", "time >= 0 s": "8", "time < 1 s": "9"})
+        self.assertEqual({case.get("file") for case in cases.values()}, {path})
+        for name, own in (("script", "the push never came"), ("time >= 0 s", "it was early"), ("time < 1 s", "it was late")):
+            failure = cases[name].find("failure")
+            self.assertTrue(failure.get("message").startswith("seed 1: " + own), failure.get("message"))
+            self.assertIn(f"({path}:{cases[name].get('line')}:5)\n", failure.text)
+            self.assertEqual(failure.text.count("happened"), 1)
+        self.assertEqual([cases[name].find("failure").get("type") for name in ("script", "time < 1 s")],
+                         ["script", "expectation"])
+
+    def test_a_golden_mismatch_and_a_fall_are_failures_and_a_crash_is_an_error(self):
+        (self.folder / "tests/runs/regression/chart.yaml").write_text(STAND)
+        golden = "golden: {tolerance: {com.pos.z: 1 mm}}\n"
+        for name, doc, case, kind in (("drifts", "drift", "golden", "failure"), ("falls", "fall", "end", "failure"),
+                                      ("crashes", "crash", "runs", "error")):
+            with self.subTest(name):
+                self.scenario(name, doc, more=golden)
+                cases = self.cases(name)
+                told = {n: [e.tag for e in c] for n, c in cases.items() if c.find("skipped") is None}
+                self.assertEqual({n: tags for n, tags in told.items() if tags}, {case: [kind]})
+        self.assertEqual(cases["time >= 0 s"].find("skipped").get("message"), "no run came to its end")
+
+    def test_each_failure_names_a_page_of_its_own_time(self):
+        self.scenario("many", "twice", "1..2", expect=("time >= 0 s", "time < 1 s"))
+        result = self.footfall("--filter", "many")
+        pages = re.findall(r"report +(\S+)", result.stdout)
+        folder = "out/test/many/seed-1"
+        self.assertEqual(pages, [f"{folder}/{name}.html" for name in ("report", "report-0.600s", "report-5.500s")])
+        self.assertEqual((self.folder / pages[2]).read_text(), "--from=4.000s --to=6.000s\n")
+
+    def test_a_result_that_failed_without_a_failure_is_bad_output(self):
+        self.scenario("silent", "unsaid")
+        self.footfall("--filter", "silent")
+        self.assertEqual(self.verdicts(), {"silent": ["bad output"]})
 
     def test_json_on_stdout_is_all_there_is_on_stdout(self):
         result = self.footfall("--json", "-")

@@ -1,4 +1,5 @@
 // Transitions that are never taken, re-enter regions, or loop within a tick: found, and only those.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/behaviors/behavior_test_support.h"
@@ -154,6 +155,40 @@ TEST(CheckLoops, OneConditionThatHoldsAllTheWayRoundIsFound) {
                              "to: a}\n    c: {after: 1 s, to: a}\n")),
             "b.yaml:7:54: warning: 'a' -> 'a' is a loop that takes no time unless '$p > 1': it "
             "needs an `after` or a condition that ends it\n");
+}
+// A condition that is not met leaves the cycle as it is, wherever it stands in the list.
+TEST(CheckLoops, ATransitionBeforeThatOfTheCycleHidesNothing) {
+  const auto said = [](const std::string& before) {
+    return problems(
+        "behavior: 1\nparameters: {p: {value: 0}, q: {value: 0}, v: 0}\nevents: {e: ''}\n"
+        "machine:\n  states:\n    a:\n      transitions: [" +
+        before +
+        "{when: $p > 1, to: b}]\n"
+        "    b: {transitions: [{when: $p > 1, to: a}]}\n"
+        "    c: {on_entry: [{set: {v: '= $v + 1'}}], transitions: [{on: e, to: a}], "
+        "after: $q * 1 s + 1 s, to: a}\n");
+  };
+  const auto loop = [](const char* line, const char* given) {
+    return fmt::format(
+        "b.yaml:{}: warning: 'a' -> 'b' -> 'a' is a loop that takes no time while '$p > 1'{}: it "
+        "needs an `after` or a condition that ends it\n",
+        line, given);
+  };
+  EXPECT_EQ(said("{when: $q > 1, to: c}, "), loop("7:44", " and not '$q > 1'"));
+  EXPECT_EQ(said("{when: $q > 1, to: c}, {when: $v > 3, to: c}, "),
+            loop("7:67", " and not '$q > 1' and not '$v > 3'"));
+  EXPECT_EQ(said("{when: t > 2 s, to: c}, "), loop("7:45", ""));
+  EXPECT_EQ(said("{when: 't > 2 s and $v > 3', to: c}, "), loop("7:58", ""));
+  EXPECT_EQ(said("{on: e, to: c}, "), loop("7:37", ""));
+  // These are met where the cycle's condition is, are met at once, or change on the way.
+  EXPECT_EQ(said("{when: $p > 0, to: c}, "), "");
+  EXPECT_EQ(said("{when: t < 2 s, to: c}, ").find("is a loop"), std::string::npos);
+}
+TEST(CheckLoops, ACycleThatChangesWhatWouldLeaveItIsNotReported) {
+  EXPECT_EQ(problems(machine("  states:\n    a: {transitions: [{when: $v > 3, to: c}, {when: true, "
+                             "to: b}]}\n    b: {on_entry: [{set: {v: '= $v + 1'}}], transitions: "
+                             "[{when: true, to: a}]}\n    c: {after: 1 s, to: a}\n")),
+            "");
 }
 TEST(CheckLoops, CyclesThatEndByThemselvesAreNot) {
   const auto clean = [](const std::string& a, const std::string& b) {

@@ -191,6 +191,28 @@ TEST_F(SaveValues, AnAnchorThatSomethingElseUsesIsNotChanged) {
             "machine.states.a.after would change too: it shares its text with what is saved\n");
 }
 
+TEST_F(SaveValues, OfAVariableTheFirstValueIsWrittenAndANoteSaysIfItIsNeverUsed) {
+  const auto text = [](const char* count, const char* height) {
+    return fmt::format(R"(behavior: 1
+robot: hume
+parameters:
+  count: {{value: {}}}
+  height: {{value: {}}}
+machine:
+  states:
+    a: {{on_entry: [{{set: {{height: com.pos.z}}}}], on_exit: [{{set: {{count: "= $count + 1"}}}}], after: 1 s, to: a}}
+)",
+                       count, height);
+  };
+  EXPECT_EQ(saved(text("0", "90 cm"), {{"count", {3.0}}}), text("3", "90 cm"));
+  EXPECT_TRUE(plan("b.yaml", {{"count", {5.0}}}).notes.empty());
+  const auto made = plan("b.yaml", {{"height", {0.8}}});
+  ASSERT_EQ(made.notes.size(), 1U);
+  EXPECT_EQ(made.notes[0], file("b.yaml") +
+                               ":8:35: the entry of 'a' sets 'height' at the start of "
+                               "a run: its value in the file is never used");
+}
+
 TEST_F(SaveValues, WhatCannotBeSavedSaysWhy) {
   put("b.yaml", R"(behavior: 1
 robot: hume
@@ -210,8 +232,6 @@ machine:
       refusal("b.yaml", {{"gains.g.height.kp", {3.0}}}),
       "gains.g.height.kp: it is given by an expression, \"= 2*$stiff\": save the parameters in "
       "it\n");
-  EXPECT_EQ(refusal("b.yaml", {{"count", {3.0}}}),
-            "b.yaml:5:18: count: it is a variable, which actions set: it is never saved\n");
   EXPECT_EQ(refusal("b.yaml", {{"stif", {3.0}}, {"stiff", {600.0}}, {"gains.g.height.kd", {-1.0}}}),
             "stif: there is no such parameter or gain (did you mean 'stiff'?)\n"
             "b.yaml:4:18: stiff: 600 is outside its range, 0 to 500\n"

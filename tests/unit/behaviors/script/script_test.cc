@@ -168,6 +168,20 @@ TEST(Script, AnErrorOfAnyTypeHasALine) {
   }
 }
 
+TEST(Script, AnErrorWithWordsOfItsOwnIsToldInThem) {
+  const auto message = [](const std::string& words) {
+    Bench bench("function f()\n  error(setmetatable({}, {__tostring = " + words + "}))\nend");
+    EXPECT_FALSE(bench.call("f"));
+    return bench.answer.messages.at(0);
+  };
+  EXPECT_EQ(message("function() return 'my words' end"), "script error: line 2: my words");
+  for (const char* none : {"function() return 7 end", "function() error('again') end", "5",
+                           "function() while true do end end"}) {
+    EXPECT_TRUE(message(none).starts_with("script error: line 2: "))
+        << none << ": " << message(none);
+  }
+}
+
 TEST(Script, AByteOrderMarkAndAProgramsLineAreSkippedAndLinesKeepTheirNumbers) {
   for (const char* head :
        {"\xEF\xBB\xBF", "#!/usr/bin/lua\n", "\xEF\xBB\xBF#!/usr/bin/env lua\n"}) {

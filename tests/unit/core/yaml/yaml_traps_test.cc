@@ -67,6 +67,15 @@ TEST(YamlTraps, CharactersThatLookLikeBlanksAreOneErrorWhereABlankIsNeeded) {
             "it\n");
 }
 
+TEST(YamlTraps, AColonThatOnlyLooksLikeOneIsToldWhereItStands) {
+  const std::string why =
+      ": error: U+FF1A (full-width form) looks like a ':' and is none: type ':'\n";
+  EXPECT_EQ(problems("a: 1\nb\uff1a 2\nc: 3\n"), "f.yaml:2:2" + why);
+  EXPECT_EQ(problems("a: 1\nb\uff1a\n  deep\n  c: 3\n"), "f.yaml:2:2" + why);
+  EXPECT_EQ(problems("a: 1\n\uff1a b: {\n").find("looks like"), std::string::npos);
+  EXPECT_EQ(problems("a: some\n  text\uff1a more\nb: 1\n"), "");
+}
+
 TEST(YamlTraps, TheSameCharactersAreFineInTextsAndComments) {
   EXPECT_EQ(problems("\ufeffa: \"Helas, note:\u00a0x\"  # it:\u00a0is \u2212 \u201cso\u201d\n"
                      "b: 10\u00a0m wide, note:\u00a0x\nc: |\n  text\n  \u00a0\u00a0more\nd: 1\n"),
@@ -115,6 +124,9 @@ TEST(YamlTraps, AHintNamesTheQuantityThatWasMeant) {
   EXPECT_EQ(quantity_hint("9.81 m/s\u00b2"), " (did you mean '9.81 m/s^2'?)");
   EXPECT_EQ(quantity_hint("8 NM"), " (did you mean '8 Nm'?)");
   EXPECT_EQ(quantity_hint("8 N\u00b7m"), " (did you mean '8 N m'?)");
+  EXPECT_EQ(quantity_hint("3 centimeters"), " (did you mean '3 cm'?)");
+  EXPECT_EQ(quantity_hint("3 Millimetres"), " (did you mean '3 mm'?)");
+  EXPECT_EQ(quantity_hint("20 milliseconds"), " (did you mean '20 ms'?)");
   EXPECT_EQ(quantity_hint("2 secs"), " (did you mean '2 s'?)");
   EXPECT_EQ(quantity_hint("100 hz"), " (did you mean '100 Hz'?)");
   EXPECT_EQ(quantity_hint("220/s^2"), " (did you mean '220 1/s^2'?)");
