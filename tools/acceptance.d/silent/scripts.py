@@ -28,7 +28,9 @@ PROGRAM = str(Path(FOOTFALL).resolve())
 AT_WORK = 0.9  # s until TERM: the function is called after 0.4 s of the run, and at each step
 END_WITHIN = 2.0  # s after TERM
 CHECK_WITHIN = 12.0  # s; of processor time its own limit is 4
-PACED = 4  # s of each paced run of a pair
+PACED = 3  # s of each paced run of a pair
+QUIET = 0.15  # share of the processors that others may use before a pair
+PATIENCE = 300  # s that all pairs may take
 UNKIND = ["terminate called", "PANIC", "Traceback", "AddressSanitizer"]
 PLACES = ("entry", "handler", "load", "scenario")
 # Loops that go on all the time, each of another kind: within the limit, in C, and in memory.
@@ -174,13 +176,35 @@ def by_chance(worse, of):
     return sum(math.comb(of, k) for k in range(worse, of + 1)) / 2**of
 
 
+def busy():
+    """Share of all processors that others use, over half a second."""
+    def times():
+        values = [int(v) for v in Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:9]]
+        return sum(values), values[3] + values[4]  # idle, waiting
+    (all_before, idle_before), _, (all_after, idle_after) = times(), time.sleep(0.5), times()
+    return 1 - (idle_after - idle_before) / max(1, all_after - all_before)
+
+
+def wait_for_quiet(until):
+    """Whether the machine came to rest by then: with other work on both processors everything that a process does more, a
+    script's loop too, makes its tick wait, whatever its thread's priority (Linux shares out by session)."""
+    while busy() > QUIET:
+        progress("waits for an idle machine")
+        if time.monotonic() > until:
+            return False
+        time.sleep(1)
+    return True
+
+
 def paced_pairs(folder, count):
-    """Late ticks a second (with, without), the runs of a pair in turn."""
+    """Late ticks a second (with, without), the runs of a pair in turn; fewer pairs if the machine has no rest."""
     texts = {name: text for name, text, _ in SCRIPTS}
     (folder / "plain.yaml").write_text(HEAD)
-    found = []
+    found, until = [], time.monotonic() + PATIENCE
     for number in range(count):
         progress(f"{number} of {count} pairs")
+        if not wait_for_quiet(until):
+            break
         file = write(folder, "entry", texts[BUSY[number % len(BUSY)]])
         order = (file, "plain.yaml") if number % 2 else ("plain.yaml", file)
         rates = {name: late_ticks(folder, name) for name in order}
@@ -215,12 +239,12 @@ def main():
     progress_done()
     worse, better = sum(w > p for w, p in pairs), sum(w < p for w, p in pairs)
     quiet = by_chance(worse, worse + better) > 0.05
-    late = "not paced" if not pairs else (
+    late = "not paced" if not count else f"the machine had no rest for {count} pairs, only for {len(pairs)}" if len(pairs) < count else (
         f"late ticks {statistics.median(w for w, _ in pairs):.1f} a second with scripts, {statistics.median(p for _, p in pairs):.1f} without "
         f"(medians of {len(pairs)} pairs; {worse} worse, {better} better)")
-    whole = len(scripts) >= 200 and bool(pairs) or options.quick or options.only
+    whole = len(scripts) >= 200 and count or options.quick or options.only
     finish(f"{len(scripts)} scripts, {len(jobs) - len(failures)} of {len(jobs)} cases as they should; {late}",
-           bool(whole) and not failures and quiet)
+           bool(whole) and not failures and quiet and len(pairs) == count)
 
 
 main()
