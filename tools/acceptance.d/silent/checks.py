@@ -221,7 +221,8 @@ def gains_part(folder, pool, count, generator, options):
         Path(options.save).write_text(json.dumps(found, indent=1))
     different = sum(f.get("same") is False for f in found)
     good, bad = sum(map(reaches, accepted)), sum(map(falls_or_saturates, refused))
-    text = (f"gains: of {len(accepted)} accepted {good} reach {SECONDS} s, of {len(refused)} refused {bad} fall or saturate "
+    run_too = [f for f in found if not f["refused"]]
+    text = (f"gains: of {len(accepted)} accepted {good} reach {SECONDS} s ({sum(map(reaches, run_too))} of {len(run_too)} with those warned of), of {len(refused)} refused {bad} fall or saturate "
             f"({sum(not reaches(f) for f in refused)} fall), of {len(warned)} warned of {sum(not reaches(f) for f in warned)} fall")
     if different:
         text += f"; {different} sets run otherwise as variables than as values"
