@@ -72,6 +72,11 @@ void open_io(lua_State* lua, const ScriptAccess& access) {
   luaL_requiref(lua, LUA_IOLIBNAME, luaopen_io, 1);
   lua_pop(lua, 1);
   remove(lua, LUA_IOLIBNAME, {"stdin", "stdout", "stderr"});
+  // What getmetatable(file) gives: else a script could put a finalizer of its own there.
+  luaL_getmetatable(lua, LUA_FILEHANDLE);
+  lua_pushliteral(lua, "file");
+  lua_setfield(lua, -2, "__metatable");
+  lua_pop(lua, 1);
   say_why(lua, LUA_IOLIBNAME,
           {{"read", kRepeat}, {"write", kText}, {"input", kRepeat}, {"output", kText}});
   if (!access.processes) say_why(lua, LUA_IOLIBNAME, {{"popen", kAllowProcesses}});

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <lua.hpp>
 #include <new>
+#include <utility>
 
 #include "behaviors/compiled/chart.h"
 #include "behaviors/script/state.h"
+#include "behaviors/script/watched.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -88,23 +91,43 @@ std::string_view without_head(std::string_view text) {
   return end == text.npos ? std::string_view() : text.substr(end);
 }
 
-// Runs the function on top of the stack with `arguments` arguments and a new budget.
-bool run_protected(ScriptState& state, int arguments, ScriptError& error) {
+// What run_protected() does, for run_inside().
+struct Inside {
+  const std::function<int()>& push;  // a function and its arguments, whose number it returns
+  int result = LUA_OK;
+  ScriptError error{};
+};
+
+// Runs the function that `push` puts on the stack.
+int run_inside(lua_State* lua) {
+  auto& inside = *static_cast<Inside*>(lua_touserdata(lua, 1));
+  lua_pushcfunction(lua, describe);
+  const int arguments = inside.push();
+  inside.result = arguments < 0 ? LUA_ERRSYNTAX : lua_pcall(lua, arguments, 0, 2);
+  if (inside.result != LUA_OK) inside.error = split_message(lua_tostring(lua, -1));
+  return 0;
+}
+
+// Runs the function that `push` puts on the stack, with a new budget. `push` may fail like the
+// function itself (a script may give its globals a metamethod, or have used up its memory), so it
+// runs inside too: an error outside of any protected call ends the process.
+bool run_protected(ScriptState& state, const std::function<int()>& push, ScriptError& error) {
   state.instructions_left = state.settings.limits.instructions;
   lua_sethook(state.lua, count_instructions, LUA_MASKCOUNT, kHookInterval);
-  const int handler = lua_gettop(state.lua) - arguments;
-  lua_pushcfunction(state.lua, describe);
-  lua_insert(state.lua, handler);
-  const int result = lua_pcall(state.lua, arguments, 0, handler);
+  Inside inside{push};
+  lua_pushcfunction(state.lua, run_inside);
+  lua_pushlightuserdata(state.lua, &inside);
+  const int outside = lua_pcall(state.lua, 1, 0, 0);
   lua_sethook(state.lua, nullptr, 0, 0);
-  if (result == LUA_OK) {
-    lua_remove(state.lua, handler);
-    return true;
+  if (outside != LUA_OK) {
+    inside.result = outside;
+    inside.error = split_message(lua_tostring(state.lua, -1));
+    lua_settop(state.lua, 0);
   }
-  error = split_message(lua_tostring(state.lua, -1));
-  if (result == LUA_ERRMEM) error.text = "stopped: it needs more memory than a script may have";
-  lua_settop(state.lua, 0);
-  return false;
+  error = std::move(inside.error);
+  if (inside.result == LUA_ERRMEM)
+    error.text = "stopped: it needs more memory than a script may have";
+  return inside.result == LUA_OK;
 }
 
 int open_protected(lua_State* lua) {
@@ -174,7 +197,17 @@ Script::Script(const ScriptSettings& settings) : impl_(std::make_unique<Impl>())
   list_globals(state.lua, impl_->built_in, false);
 }
 
-Script::~Script() { lua_close(impl_->state.lua); }
+// A program that the script left running is waited for when its pipe is closed.
+Script::~Script() {
+  const std::shared_ptr<Impl> impl = std::move(impl_);
+  const auto close = [impl] { lua_close(impl->state.lua); };
+  const ScriptAccess& access = impl->state.settings.access;
+  if (!access.files && !access.processes) {
+    close();
+  } else {
+    core::run_watched(close, watch_limits(impl->state.settings.limits));
+  }
+}
 
 void Script::stop() noexcept {
   const std::lock_guard lock(impl_->state.view_in_use);
@@ -188,15 +221,13 @@ const ScriptSettings& Script::settings() const noexcept { return impl_->state.se
 bool Script::load(const std::string& text, ScriptError& error, const std::string& name) {
   if (stopped()) return false;
   lua_State* lua = impl_->state.lua;
-  // "t": text only; malformed byte code could crash the interpreter.
   const std::string_view code = without_head(text);
   const std::string chunk = "=" + (name.empty() ? std::string(kNoName) : name);
-  if (luaL_loadbufferx(lua, code.data(), code.size(), chunk.c_str(), "t") != LUA_OK) {
-    error = split_message(lua_tostring(lua, -1));
-    lua_settop(lua, 0);
-    return false;
-  }
-  return run_protected(impl_->state, 0, error);
+  // "t": text only; malformed byte code could crash the interpreter. -1: it does not compile.
+  const auto push = [&] {
+    return luaL_loadbufferx(lua, code.data(), code.size(), chunk.c_str(), "t") == LUA_OK ? 0 : -1;
+  };
+  return run_protected(impl_->state, push, error);
 }
 
 std::vector<std::string> Script::functions() const {
@@ -217,8 +248,11 @@ bool Script::call(const std::string& function, const ScriptView& view, ScriptAns
   state.view = &view;
   state.answer = &answer;
   ScriptError error;
-  lua_getglobal(state.lua, function.c_str());
-  const bool good = run_protected(state, 0, error);
+  const auto push = [&] {
+    lua_getglobal(state.lua, function.c_str());
+    return 0;
+  };
+  const bool good = run_protected(state, push, error);
   return impl_->finish(good, error, out, answer);
 }
 
@@ -232,9 +266,12 @@ bool Script::handle(std::string_view event, const ScriptView& view, ScriptAnswer
     state.view = &view;
     state.answer = &answer;
     ScriptError error;
-    lua_rawgeti(state.lua, LUA_REGISTRYINDEX, state.handlers[k]);
-    lua_pushlstring(state.lua, event.data(), event.size());
-    const bool good = run_protected(state, 1, error);
+    const auto push = [&] {
+      lua_rawgeti(state.lua, LUA_REGISTRYINDEX, state.handlers[k]);
+      lua_pushlstring(state.lua, event.data(), event.size());
+      return 1;
+    };
+    const bool good = run_protected(state, push, error);
     all = impl_->finish(good, error, out, answer) && all;
   }
   return all;

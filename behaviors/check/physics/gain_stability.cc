@@ -4,6 +4,9 @@
 // rank. Judged as the world simulates it, and as a robot holds a torque: over the whole period.
 // A law without damping (kd 0) lets an error swing for ever, and sampling makes it grow: that is
 // reported where it grows faster than the robot falls by itself, ω = √(g/h).
+//
+// A stable loop falls as well where small errors ask for more than there is. For the CoM's height
+// that is certain without a model: feet push only, so nothing accelerates downwards more than g.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,6 +91,7 @@ class GainCheck {
     if (!gains) return;
     const bool damped = (*gains)[2] > 0.0;
     if (report(task, axis, *gains, damped, Severity::error, {})) return;
+    report_lift(task, axis, *gains);
     for (const RangeEnd& end : ends) {
       if (report(task, axis, end.gains, damped, Severity::warning,
                  fmt::format(" at the end of the range of '{}'", end.name))) {
@@ -156,6 +160,22 @@ class GainCheck {
                     growth_text(growth_of(l), l.period), kNames[gain],
                     most(task, gains, gain, damped, l.exact), kUnits[gain], others(gains, gain)));
     return true;
+  }
+
+  // The CoM's height, unless its acceleration is bounded.
+  void report_lift(const TaskSpec& task, const AxisSpec& axis, const Gains& gains) {
+    constexpr double kError = 1e-3;  // m
+    constexpr double kSpeed = 1e-2;  // m/s
+    const tasks::TaskTypeInfo& type = tasks::info(task.type);
+    if (type.subject != tasks::Subject::com || !type.is_length(2) || axis.axis != 2) return;
+    const double wanted = gains[0] * kError + gains[2] * kSpeed;
+    if (axis.acceleration_limit >= 0 || wanted <= kGravity) return;
+    context_.findings.add(
+        Severity::warning, axis.mark, "lifts-feet", axis_text(task, axis),
+        fmt::format("task '{}' asks for {:.3g} m/s^2 when the CoM is 1 mm too high and 1 cm/s too "
+                    "fast (kp {:g}, kd {:g}): feet cannot pull, so beyond 9.81 m/s^2 they leave "
+                    "the ground; smaller gains, or `acceleration_limit`",
+                    b().task_instances[at(task.instance)].name, wanted, gains[0], gains[2]));
   }
 
   std::string axis_text(const TaskSpec& task, const AxisSpec& axis) const {

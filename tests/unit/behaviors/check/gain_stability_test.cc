@@ -16,6 +16,7 @@ namespace {
 using behaviors::growth;
 using behaviors::SampledLoop;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr double kPeriod = 1.0 / 1500.0;
@@ -145,7 +146,7 @@ TEST(PhysicsGains, DampingBeyondTwoOverThePeriodIsRefused) {
                                                    "5000 1/s is too much for a period of 0.667 ms: "
                                                    "an error grows 2.33 times in each period; kd "
                                                    "3000 1/s is the most"));
-  EXPECT_EQ(physics(with_gains("{kp: 100, kd: 2990}")), "");
+  EXPECT_THAT(physics(with_gains("{kp: 100, kd: 2990}")), Not(HasSubstr("unstable")));
   EXPECT_THAT(physics(with_gains("{kp: 100, kd: 3005}")),
               HasSubstr("error: task 'height' is unst"));
 }
@@ -161,7 +162,7 @@ TEST(PhysicsGains, AStiffnessWithoutTheDampingThatSamplingCostsIsRefused) {
               HasSubstr("error: task 'height' is unstable in 'z': kp 1e+07 1/s^2"));
   EXPECT_THAT(physics(with_gains("{kp: 1e7}")), HasSubstr("error: task 'height' is unstable"));
   // Half a period's delay on a robot, a quarter in simulation: 1e5 needs 33 and 17.
-  EXPECT_EQ(physics(with_gains("{kp: 1e5, kd: 34}")), "");
+  EXPECT_THAT(physics(with_gains("{kp: 1e5, kd: 34}")), Not(HasSubstr("unstable")));
   EXPECT_THAT(physics(with_gains("{kp: 1e5, kd: 20}")),
               HasSubstr("warning: task 'height' is unstable in 'z' on a robot, which holds its "
                         "torque over the whole period: kp 100000 1/s^2"));
@@ -181,6 +182,17 @@ TEST(PhysicsGains, ALawWithoutDampingIsNotRefusedForThat) {
   EXPECT_EQ(physics(with_gains("{kp: 400}")), "");
   EXPECT_EQ(physics(with_gains("{kp: 100, ki: 20}")), "");
   EXPECT_EQ(physics(with_gains("{kp: 0, kd: 0}")), "");
+}
+
+// 9.81 m/s^2 at 1 mm and 1 cm/s: kd 981 alone, or kp 9810.
+TEST(PhysicsGains, AHeightThatAsksForMoreThanGravityAtSmallErrorsIsWarnedOf) {
+  const std::string text = with_gains("{kp: 2000, kd: 900}");
+  EXPECT_THAT(physics(text),
+              StartsWith(place_of(text, "z], ref") +
+                         "warning: task 'height' asks for 11 m/s^2 when the CoM is 1 mm too high"));
+  EXPECT_EQ(physics(with_gains("{kp: 100, kd: 970}")), "");
+  EXPECT_EQ(physics(with_gains("{kp: 2000, kd: 900}, acceleration_limit: 5 m/s^2")), "");
+  EXPECT_EQ(physics(with_gains("{kd: 2000}", "rest")), "");
 }
 
 std::string tabled(const std::string& gains, const std::string& ranges) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <memory>
 
 #include "behaviors/script/watched.h"
@@ -118,6 +119,44 @@ TEST(Script, MemoryIsBounded) {
   EXPECT_NE(bench.answer.messages[0].find("more memory"), std::string::npos);
 }
 
+// What a call needs before its function runs may fail as well; outside of a protected call that
+// would end the process.
+TEST(Script, AFunctionThatCannotEvenBeSoughtIsAnError) {
+  Bench bench(R"(
+function f()
+  f = nil
+  setmetatable(_G, {__index = function() error("no such thing") end})
+end
+function g()
+  g = nil
+  setmetatable(_G, {__index = function() while true do end end})
+end)");
+  EXPECT_TRUE(bench.call("f"));
+  EXPECT_FALSE(bench.call("f"));
+  EXPECT_NE(bench.answer.messages.at(0).find("no such thing"), std::string::npos);
+  EXPECT_TRUE(bench.call("g"));
+  EXPECT_FALSE(bench.call("g"));
+  EXPECT_NE(bench.answer.messages.at(1).find("ran longer"), std::string::npos);
+}
+
+TEST(Script, AnEventForAScriptWithoutAnyMemoryLeftIsAnError) {
+  Bench bench(R"(
+footfall.on("*", function() end)
+function f()
+  local size = 1 << 20
+  while size > 0 do
+    local good, text = pcall(string.rep, "x", size)
+    if good then kept = {text, kept} else size = size // 2 end
+  end
+end)",
+              {{}, 0, {}, 1'000'000});
+  EXPECT_FALSE(bench.call("f"));
+  const std::string event(5000, 'e');
+  EXPECT_FALSE(bench.script.handle(event, bench.view, bench.answer));
+  EXPECT_FALSE(bench.call(event));
+  EXPECT_NE(bench.answer.messages.back().find("more memory"), std::string::npos);
+}
+
 TEST(Script, FilesProcessesAndClocksAreOutOfReach) {
   for (const char* text : {"io.open('x')", "os.execute('true')", "os.remove('x')", "os.time()",
                            "dofile('x')", "load('return 1')", "require('x')", "debug.getinfo(1)"}) {
@@ -220,6 +259,23 @@ TEST(Script, ARunMayAllowFilesWithoutProcesses) {
               {{true, false}});
   EXPECT_TRUE(bench.call("f"));
   EXPECT_FALSE(bench.call("g"));
+}
+
+TEST(Script, AFilesMetatableIsOutOfReach) {
+  Bench bench("function f() getmetatable(io.open('/dev/null')).__gc = function() end end",
+              {{true, false}});
+  EXPECT_FALSE(bench.call("f"));
+}
+
+TEST(Script, AProgramLeftRunningDoesNotKeepTheScriptsEnd) {
+  ScriptSettings settings;
+  settings.access.processes = true;
+  settings.limits.deadline = 0.02;  // of processor time; it waits five times that
+  auto bench = std::make_unique<Bench>("function f() kept = io.popen('sleep 3') end", settings);
+  ASSERT_TRUE(bench->call("f"));
+  const auto begin = std::chrono::steady_clock::now();
+  bench.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
 }
 
 TEST(Script, IterationAndRandomNumbersRepeat) {
