@@ -69,7 +69,7 @@ PlanePlot cone_plot(const Log& log, const std::string& foot, double friction) {
     for (const Point2& point : plot.curves.back().points) top = std::max(top, point[1]);
   }
   if (top > 0.0) {
-    plot.curves.push_back({fmt::format("cone, friction {:g}", friction),
+    plot.curves.push_back({fmt::format("cone, friction {:.3g}", friction),
                            "c3",
                            Mark::line,
                            {{0.0, 0.0}, {friction * top, top}},
