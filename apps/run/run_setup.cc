@@ -94,7 +94,8 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
   auto mujoco = std::make_unique<sim::MujocoBackend>(behavior.robot, world);
   const sim::PhysicsFacts f = mujoco->facts();
   backend.physics = fmt::format(
-      "step 1/{:.0f} s, friction {:.3g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature {:g}, "
+      "step 1/{:.0f} s, friction {:.3g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature "
+      "{:g}, "
       "constraints {}, mocap bodies {}, mass {:.2f} kg",
       1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max,
       f.armature_max, f.equalities, f.mocap_bodies, f.mass);

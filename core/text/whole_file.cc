@@ -40,6 +40,11 @@ const char* fill(FileDescriptor& file, const std::string& target, std::string_vi
   return written ? "" : "cannot write";
 }
 
+void write_stream(const std::string& path, std::string_view text) {
+  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file.open() || !write_all(file.get(), text) || !file.close()) fail("cannot write", errno);
+}
+
 }  // namespace
 
 std::string real_path(const std::string& path) {
@@ -49,9 +54,16 @@ std::string real_path(const std::string& path) {
   return error || real.empty() ? path : real.string();
 }
 
+bool is_stream(const std::string& path) {
+  struct stat facts {};
+  return ::stat(path.c_str(), &facts) == 0 && !S_ISREG(facts.st_mode) && !S_ISDIR(facts.st_mode);
+}
+
 StagedFile::StagedFile(std::string target, std::string_view text) : target_(std::move(target)) {
   std::error_code ignored;
   if (std::filesystem::is_directory(target_, ignored)) fail("cannot write", EISDIR);
+  // A rename would put a file in the place of the device or the pipe.
+  if (is_stream(target_)) throw MachineError("cannot write: it is a device or a pipe, not a file");
   if (::access(target_.c_str(), W_OK) != 0 && errno != ENOENT) fail("cannot write", errno);
   const std::string part = fmt::format("{}.{}.part", target_, ::getpid());
   FileDescriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -89,6 +101,7 @@ void StagedFile::flush_folder() const {
 
 void write_whole_file(const std::string& path, std::string_view text) {
   try {
+    if (is_stream(path)) return write_stream(path, text);
     StagedFile(real_path(path), text).replace();
   } catch (const std::runtime_error& error) {
     throw MachineError(fmt::format("{}: {}", path, error.what()));

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/process/machine_error.h"
+#include "core/text/whole_file.h"
 
 namespace footfall::sim {
 namespace {
@@ -36,6 +37,9 @@ std::string part_of(const std::string& path) {
 
 MovieWriter::MovieWriter(const std::string& path, int width, int height, double frames_per_second)
     : path_(path), part_(part_of(path)) {
+  if (core::is_stream(path)) {
+    throw core::MachineError("cannot write the film '" + path + "': it is no file");
+  }
   if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) {
     throw core::MachineError("cannot make the film '" + path +
                              "': ffmpeg is missing (apt-get install ffmpeg)");

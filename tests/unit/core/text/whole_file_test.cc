@@ -1,5 +1,6 @@
 #include "core/text/whole_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -80,6 +81,22 @@ TEST_F(WholeFile, LeavesTheOldFileIntactWhenTheNewOneCannotBeWritten) {
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(reason, file("f") + ": cannot write: File too large");
   EXPECT_EQ(read_whole_file(file("f")), "old");
+  EXPECT_EQ(count(), 1);
+}
+
+// As root, who may rename over a device: /dev/full would be a file from then on.
+TEST_F(WholeFile, APipeIsWrittenIntoAndStaysAPipe) {
+  ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0600), 0);
+  const int reader = ::open(file("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  write_whole_file(file("pipe"), "text");
+  char got[5] = {};
+  EXPECT_EQ(::read(reader, got, 4), 4);
+  EXPECT_STREQ(got, "text");
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(file("pipe")));
+  EXPECT_THROW(StagedFile(file("pipe"), "text"), std::runtime_error);
+  EXPECT_TRUE(fs::is_fifo(file("pipe")));
   EXPECT_EQ(count(), 1);
 }
 
