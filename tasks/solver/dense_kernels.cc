@@ -146,8 +146,7 @@ int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* 
                double* norm2, Reflectors* keep, double* condition, double* work) noexcept {
   const int columns = range.col_last - range.col_first;
   const int most = std::min(columns, range.row_last - range.row_first);
-  double largest = 0.0;
-  double smallest = 0.0;
+  double worst2 = 1.0;
   int rank = 0;
   for (; rank < most; ++rank) {
     const int first = range.row_first + rank;
@@ -162,14 +161,13 @@ int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* 
     const double size = make_reflector(x, first, range.row_last, c, v, beta);
     if (keep) ++keep->count;
     reflect(x, first, range.row_last, c + 1, range.col_end, v, *beta);
-    largest = std::max(largest, size);
-    smallest = rank == 0 ? size : std::min(smallest, size);
+    worst2 = std::max(worst2, norm2[c] / (size * size));
   }
   // What the rank rule rejected is round-off or close to it: it must not feed later levels.
   for (int r = range.row_first + rank; r < range.row_last; ++r) {
     std::fill(x.row(r) + range.col_first + rank, x.row(r) + range.col_last, 0.0);
   }
-  if (condition) *condition = rank > 0 ? largest / smallest : 1.0;
+  if (condition) *condition = std::sqrt(worst2);
   return rank;
 }
 

@@ -41,8 +41,10 @@ struct RankRule {
 };
 
 // Pivoted Householder QR. `order` and `norm2` are indexed by column and permuted with the columns.
-// Writes exact zeros below the diagonal. Returns the rank; `condition` (may be null) gets the ratio
-// of the largest to the smallest kept pivot. `keep` (may be null) collects the reflections.
+// Writes exact zeros below the diagonal. Returns the rank; `condition` (may be null) gets the
+// largest ratio of a column's norm before any projection to its pivot, over the kept ones; 1
+// without any. An error of 1/ratio in the column may be all of what is left of it. `keep` (may be
+// null) collects the reflections.
 int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* order,
                double* norm2, Reflectors* keep, double* condition, double* work) noexcept;
 

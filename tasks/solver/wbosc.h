@@ -78,7 +78,9 @@ struct WboscSolution {
   std::vector<double> internal_measured;  // internal_rows: W_int f under tau_measured
   std::vector<int> level_rows;            // levels: rows of a weight above 0
   std::vector<int> level_rank;            // levels
-  std::vector<double> level_condition;  // levels: largest over smallest kept pivot; 1 without rows
+  // levels: the largest ratio of a row to what contacts, actuators and the levels before leave of
+  // it (norms of the whitened rows); 1 without rows
+  std::vector<double> level_condition;
   int contact_rank = 0;
   int actuation_rank = 0;  // of φ; na - rank internal-force directions
   bool limited = false;    // a torque limit acted

@@ -85,6 +85,26 @@ TEST(PivotedQr, FindsTheRankAndLeavesExactZerosBehindIt) {
   EXPECT_GE(f.condition, 1.0);
 }
 
+// By hand: b leaves the plane of a by an angle of 1/50 (tan), so of its length sqrt(1 + 50²)/50
+// only 1/50 is new. A level of one row that earlier rotations have shortened shows, too: its length
+// before is in norm2.
+TEST(PivotedQr, ConditionIsTheLengthOfAColumnOverWhatIsNewInIt) {
+  Matrix m(3, 2);
+  m(0, 0) = 1.0;
+  m(0, 1) = 0.999;
+  m(1, 1) = 0.999 / 50.0;
+  EXPECT_NEAR(factor_columns(m, 2).condition, std::sqrt(1.0 + 50.0 * 50.0), 1e-9);
+  EXPECT_NEAR(factor_columns(m, 1).condition, 1.0, kRound);
+  std::vector<double> x = {0.02, 0.0, 0.0}, work(8);
+  std::vector<int> order = {0};
+  std::vector<double> before = {1.0};  // squared
+  double condition = 0.0;
+  EXPECT_EQ(tasks::pivoted_qr({x.data(), 1}, {0, 3, 0, 1, 1, 3}, {}, order.data(), before.data(),
+                              nullptr, &condition, work.data()),
+            1);
+  EXPECT_NEAR(condition, 50.0, 1e-9);
+}
+
 TEST(PivotedQr, ColumnsBelowTheAbsoluteFloorHaveNoRank) {
   Random random(4);
   const Matrix tiny = 1e-12 * random_matrix(random, 5, 3);
