@@ -14,6 +14,7 @@
 #include <set>
 #include <thread>
 
+#include "tests/support/allocation_guard.h"
 #include "tests/unit/engine/links/scripted.h"
 
 namespace footfall::tests {
@@ -119,11 +120,16 @@ TEST(ScriptThread, ACallThatBurnsIsStuckAtItsProcessorTime) {
   Scripted run(kCallsF, "function f() string.find(('a'):rep(300), '.-.-.-b') end", settings);
   run.raise("a");
   int ticks = 0;
+  long allocations = 0;
   EXPECT_TRUE(comes([&] {
+    const AllocationGuard guard;
     run.tick(false);
     ++ticks;
-    return run.link->stuck(kPeriod);
+    const bool stuck = run.link->stuck(kPeriod);
+    allocations += guard.allocations();
+    return stuck;
   }));
+  EXPECT_EQ(allocations, 0);
   EXPECT_GT(ticks, 20);
   EXPECT_LT(ticks, 1000);
 }
