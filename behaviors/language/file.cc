@@ -42,7 +42,7 @@ constexpr KeySpec kScriptsRows[] = {
         .otherwise("10000000"),
     key("deadline", quantity(core::kTime),
         "processor time after which a call that does not come back is given up, with the fault "
-        "script.stuck")
+        "script.stuck; by the clock ten times that, at least 1 s")
         .otherwise("2 s and 200 ns for each of its instructions"),
     key("doc", text_of("a text"), "their purpose, in one line"),
 };

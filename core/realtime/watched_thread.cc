@@ -22,6 +22,12 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+double read_clock(clockid_t clock) {
+  timespec time{};
+  if (::clock_gettime(clock, &time) != 0) return 0.0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 }  // namespace
 
 WatchedThread::WatchedThread(std::function<void()> work) : thread_(std::move(work)) {}
@@ -32,15 +38,15 @@ WatchedThread::~WatchedThread() {
 
 double WatchedThread::cpu_time() const noexcept {
   clockid_t clock{};
-  timespec time{};
   // native_handle() is not const, and does not change the thread.
   auto& thread = const_cast<std::thread&>(thread_);
-  if (!thread.joinable() || ::pthread_getcpuclockid(thread.native_handle(), &clock) != 0 ||
-      ::clock_gettime(clock, &time) != 0) {
+  if (!thread.joinable() || ::pthread_getcpuclockid(thread.native_handle(), &clock) != 0) {
     return 0.0;
   }
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  return read_clock(clock);
 }
+
+double WatchedThread::own_cpu_time() noexcept { return read_clock(CLOCK_THREAD_CPUTIME_ID); }
 
 void WatchedThread::let_go() noexcept {
   g_let_go.store(true);

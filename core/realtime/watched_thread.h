@@ -25,7 +25,9 @@ class WatchedThread {
   WatchedThread& operator=(const WatchedThread&) = delete;
   ~WatchedThread();  // waits for the thread, unless it was let go
 
-  double cpu_time() const noexcept;  // s, that the thread has used
+  // s of processor time that the thread has used. From any thread; neither allocates nor locks.
+  double cpu_time() const noexcept;
+  static double own_cpu_time() noexcept;  // s, of the calling thread
   // It is never waited for again. From now on threads_were_let_go().
   void let_go() noexcept;
 

@@ -3,19 +3,38 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <new>
 #include <stdexcept>
 #include <utility>
+
+#include "core/realtime/thread_priority.h"
 
 namespace footfall::engine {
 
 using behaviors::ScriptAnswer;
 using behaviors::ScriptView;
 
+namespace {
+
+// Made on a thread of its own, whose part of the heap it gets: while Lua's thread frees or moves
+// memory it holds that part's lock, for which the run's thread would wait if it were its own part.
+std::shared_ptr<behaviors::Script> make_script(const behaviors::ScriptSettings& settings) {
+  std::shared_ptr<behaviors::Script> script;
+  const auto make = [&script, &settings] {
+    try {
+      script = std::make_shared<behaviors::Script>(settings);
+    } catch (const std::bad_alloc&) {
+    }
+  };
+  { const core::WatchedThread thread(make); }  // waits for its end
+  if (script == nullptr) throw std::bad_alloc();
+  return script;
+}
+
+}  // namespace
+
 ScriptLink::Side::Side(const behaviors::Behavior& of, const behaviors::ScriptSettings& settings)
-    : behavior(&of),
-      events(of.events),
-      script(std::make_shared<behaviors::Script>(settings)),
-      batches(kBatches) {
+    : behavior(&of), events(of.events), script(make_script(settings)), batches(kBatches) {
   for (const auto& call : of.calls) calls.push_back(call.name);
   for (const behaviors::ScriptFile& file : of.scripts) {
     behaviors::ScriptError error;
@@ -33,9 +52,13 @@ ScriptLink::Side::Side(const behaviors::Behavior& of, const behaviors::ScriptSet
 }
 
 ScriptLink::ScriptLink(const behaviors::Behavior& behavior,
-                       const behaviors::ScriptSettings& settings)
+                       const behaviors::ScriptSettings& settings, bool paced)
     : side_(std::make_shared<Side>(behavior, settings)),
-      thread_([side = side_] { side->work(); }) {}
+      limits_(behaviors::watch_limits(settings.limits)),
+      thread_([side = side_, paced] {
+        if (paced) core::take_idle_priority();
+        side->work();
+      }) {}
 
 ScriptLink::~ScriptLink() {
   side_->stop.store(true);
@@ -48,7 +71,9 @@ ScriptLink::~ScriptLink() {
 
 void ScriptLink::deliver(behaviors::Machine& machine) noexcept {
   const std::uint32_t answered = side_->answered.load(std::memory_order_acquire);
-  if (answered != delivered_) unanswered_ = 0;
+  const std::uint32_t begun = side_->begun.load(std::memory_order_relaxed);
+  if (answered != delivered_ || begun != begun_) unanswered_ = 0;
+  begun_ = begun;
   for (; delivered_ != answered; ++delivered_) {
     const Batch& done = side_->batch(delivered_);
     for (std::size_t k = 0; k < done.edit_count; ++k) {
@@ -78,9 +103,15 @@ bool ScriptLink::post(const behaviors::Machine& machine, const double* signals,
   return next.request_count == requests.size();
 }
 
-bool ScriptLink::stuck(std::int64_t ticks) noexcept {
-  return given_up_ ||
-         (delivered_ != side_->posted.load(std::memory_order_relaxed) && unanswered_ > ticks);
+bool ScriptLink::stuck(double period) noexcept {
+  if (given_up_) return true;
+  if (delivered_ == side_->posted.load(std::memory_order_relaxed)) return false;
+  const double waited = static_cast<double>(unanswered_) * period;
+  if (waited <= limits_.cpu) return false;  // it cannot have used more
+  if (waited > limits_.wall) return true;
+  // In this order: a call that begins in between has used nothing.
+  const double used = thread_.cpu_time();
+  return used - side_->used_before.load(std::memory_order_acquire) > limits_.cpu;
 }
 
 void ScriptLink::wait() noexcept {
@@ -92,21 +123,31 @@ void ScriptLink::wait() noexcept {
 }
 
 bool ScriptLink::wait_for(const std::function<bool()>& done) noexcept {
-  return core::wait_watched(thread_, behaviors::watch_limits(side_->script->settings().limits),
-                            side_->mutex, side_->came, done);
+  return core::wait_watched(thread_, limits_, side_->mutex, side_->came, done);
 }
 
 void ScriptLink::give_up() noexcept {
   given_up_ = true;
   side_->script->stop();
   thread_.let_go();
-  const std::lock_guard lock(side_->mutex);
-  side_->messages.emplace_back(std::string("script error: ") + behaviors::kGaveUp);
 }
 
 std::vector<std::string> ScriptLink::take_messages() {
-  const std::lock_guard lock(side_->mutex);
-  return std::exchange(side_->messages, {});
+  Texts all;
+  const std::size_t count = side_->texts.waiting();
+  for (std::size_t k = 0; k < count; ++k) {
+    Texts& texts = side_->texts.at(k);
+    all.insert(all.end(), texts.begin(), texts.end());
+    if (Texts* const back = side_->read_texts.next()) {
+      std::swap(*back, texts);
+      side_->read_texts.publish();
+    }
+  }
+  side_->texts.release(count);
+  if (given_up_ && !std::exchange(told_given_up_, true)) {
+    all.emplace_back(std::string("script error: ") + behaviors::kGaveUp);
+  }
+  return all;
 }
 
 void ScriptLink::Side::work() noexcept {
@@ -119,6 +160,7 @@ void ScriptLink::Side::work() noexcept {
     } catch (...) {  // out of memory: as if the scripts had asked for nothing
       next.event_count = next.edit_count = 0;
     }
+    begin_call();  // what the last one has used does not count for the next, which may come late
     const bool last = stop;
     {
       const std::lock_guard lock(mutex);
@@ -136,6 +178,7 @@ void ScriptLink::Side::answer(Batch& batch) {
   ScriptAnswer answer;
   for (std::size_t k = 0; k < batch.request_count && !script->stopped(); ++k) {
     const auto index = static_cast<std::size_t>(batch.requests[k].index);
+    begin_call();
     if (batch.requests[k].is_event) {
       script->handle(events[index], view, answer);
     } else {
@@ -149,8 +192,28 @@ void ScriptLink::Side::answer(Batch& batch) {
   if (answer.events.size() > kAnswers || answer.edits.size() > kAnswers) {
     answer.messages.emplace_back("script error: too many events or edits in one tick");
   }
-  const std::lock_guard lock(mutex);
-  messages.insert(messages.end(), answer.messages.begin(), answer.messages.end());
+  if (!answer.messages.empty()) tell(std::move(answer.messages));
+}
+
+void ScriptLink::Side::begin_call() noexcept {
+  used_before.store(core::WatchedThread::own_cpu_time(), std::memory_order_release);
+  begun.fetch_add(1, std::memory_order_relaxed);
+}
+
+void ScriptLink::Side::tell(Texts said) {
+  for (std::size_t k = 0; k < read_texts.waiting(); ++k) read_texts.at(k) = Texts();
+  read_texts.release(read_texts.waiting());
+  Texts* const next = texts.next();
+  if (next == nullptr) {
+    lost += said.size();
+    return;
+  }
+  if (lost > 0) {
+    said.push_back("script error: " + std::to_string(lost) + " texts were lost: nobody took them");
+    lost = 0;
+  }
+  *next = std::move(said);
+  texts.publish();
 }
 
 }  // namespace footfall::engine

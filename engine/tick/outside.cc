@@ -17,13 +17,7 @@ std::unique_ptr<ScriptLink> make_scripts(const behaviors::Behavior& behavior,
   script.access = settings.script_access;
   script.seed = settings.seed;
   script.limits = behavior.script_limits;
-  return std::make_unique<ScriptLink>(behavior, script);
-}
-
-// What a call may take by the wall clock, in ticks of a paced run.
-std::int64_t script_ticks(const behaviors::Behavior& behavior) {
-  return static_cast<std::int64_t>(behaviors::watch_limits(behavior.script_limits).cpu /
-                                   behavior.robot.period_s());
+  return std::make_unique<ScriptLink>(behavior, script, !settings.lockstep);
 }
 
 }  // namespace
@@ -32,7 +26,6 @@ Outside::Outside(const behaviors::Behavior& behavior, const LoopSettings& settin
     : behavior_(behavior),
       planners_(behavior, latency_ticks(settings.planner_latency, behavior.robot.period_s())),
       scripts_(make_scripts(behavior, settings)),
-      script_ticks_(script_ticks(behavior)),
       lockstep_(settings.lockstep),
       watch_(behavior) {}
 
@@ -91,7 +84,8 @@ FaultFindings Outside::post(std::int64_t tick, const behaviors::Machine& machine
   const bool lost = playing_ ? trace_->requests_lost
                              : scripts_ && !scripts_->post(machine, signals.values(), time);
   if (lost) findings.add(core::Fault::event_overflow);
-  const bool stuck = playing_ ? trace_->scripts_stuck : scripts_ && scripts_->stuck(script_ticks_);
+  const bool stuck =
+      playing_ ? trace_->scripts_stuck : scripts_ && scripts_->stuck(behavior_.robot.period_s());
   if (stuck) findings.add(core::Fault::script_stuck);
   if (trace_ != nullptr) {
     trace_->requests_lost = lost;

@@ -53,7 +53,6 @@ class Outside {
   const behaviors::Behavior& behavior_;
   PlannerLink planners_;
   std::unique_ptr<ScriptLink> scripts_;
-  std::int64_t script_ticks_;  // after which a script that has not answered is stuck
   bool lockstep_;
   WriteWatch watch_;
   InputTrace* trace_ = nullptr;

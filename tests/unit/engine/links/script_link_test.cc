@@ -1,62 +1,12 @@
 // Scripts beside the tick: their answers come with the next one in lock-step, runs repeat, and a
 // script that is stuck does not stop the tick.
-#include "engine/links/script_link.h"
-
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "behaviors/loader.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/unit/engine/links/scripted.h"
 
 namespace footfall::tests {
 namespace {
-
-// A statechart with a script beside it, in a folder of its own.
-class Scripted {
- public:
-  Scripted(const std::string& machine, const std::string& lua)
-      : folder_(std::filesystem::temp_directory_path() /
-                ("footfall-script-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "s.lua") << lua;
-    core::Diagnostics diagnostics;
-    behavior = behaviors::load_behavior_text(
-        "behavior: 1\nscripts: s.lua\nparameters: {x: {value: 0, range: [-9, 9], live: true}}\n"
-        "events: {a: '', b: ''}\n" +
-            machine,
-        (folder_ / "b.yaml").string(), {}, diagnostics);
-    if (!behavior) throw std::runtime_error(diagnostics.to_string());
-    signals = behavior->signals;
-    machine_ = std::make_unique<behaviors::Machine>(*behavior, signals);
-    link = std::make_unique<engine::ScriptLink>(*behavior, behaviors::ScriptSettings{});
-    machine_->start();
-  }
-  ~Scripted() { std::filesystem::remove_all(folder_); }
-
-  bool tick(bool wait = true) {
-    if (wait) link->wait();
-    link->deliver(*machine_);
-    machine_->tick(now_++);
-    return link->post(*machine_, signals.values(), 0.0);
-  }
-  void raise(const char* event) { machine_->raise(behavior->find_event(event)); }
-  std::string state() const {
-    return behavior->states[static_cast<std::size_t>(machine_->active_atomic().front())].name;
-  }
-  double x() const { return machine_->parameters()[0]; }
-
-  std::unique_ptr<behaviors::Behavior> behavior;
-  core::SignalTable signals;
-  std::unique_ptr<engine::ScriptLink> link;
-
- private:
-  std::filesystem::path folder_;
-  std::unique_ptr<behaviors::Machine> machine_;
-  std::int64_t now_ = 0;
-};
 
 TEST(ScriptLink, ACalledFunctionAnswersWithTheNextTick) {
   Scripted run(
