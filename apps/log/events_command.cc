@@ -101,16 +101,17 @@ std::string json_of(const lab::LoggedEvent& event) {
 }
 
 void print_events(const EventsOptions& options) {
-  const double from = read_time(options.from, "--from", -std::numeric_limits<double>::infinity());
-  const double to = read_time(options.to, "--to", std::numeric_limits<double>::infinity());
-  for (const std::string& path : run_logs(options.log)) {
-    const lab::Log log = lab::read_log(path);
+  const TimeSpan span = read_span(options.from, options.to);
+  std::vector<lab::Log> logs;
+  for (const std::string& path : run_logs(options.log)) logs.push_back(lab::read_log(path));
+  require_part_of(logs, span);
+  for (const lab::Log& log : logs) {
     check_kinds(options.kinds, log);
     if (!log.complete) {
-      fmt::print(stderr, "warning: the log '{}' was cut off; its events end there\n", path);
+      fmt::print(stderr, "warning: the log '{}' was cut off; its events end there\n", log.path);
     }
     for (const lab::LoggedEvent& event : log.events) {
-      if (event.time < from || event.time > to) continue;
+      if (event.time < span.from || event.time > span.to) continue;
       const bool asked = options.kinds.empty() ||
                          std::ranges::find(options.kinds, event.kind) != options.kinds.end();
       if (asked) fmt::print("{}", options.json ? json_of(event) : text_of(event));

@@ -58,8 +58,8 @@ std::vector<std::string> state_paths(const lab::Log& log) {
   return paths;
 }
 
-std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, double from,
-                        double to) {
+std::string signals_csv(const ExportArguments& arguments, const lab::Log& log,
+                        const TimeSpan& span) {
   const std::vector<std::size_t> columns = chosen(arguments, log);
   fmt::memory_buffer out;
   const std::vector<std::string> states = state_paths(log);
@@ -69,7 +69,7 @@ std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, d
     fmt::format_to(std::back_inserter(out), ",{}", quoted(log.signals[s].name));
   }
   for (std::size_t row = 0; row < log.rows(); ++row) {
-    if (log.time[row] < from || log.time[row] > to) continue;
+    if (log.time[row] < span.from || log.time[row] > span.to) continue;
     fmt::format_to(std::back_inserter(out), "\n{},{:.9f}", log.tick[row], log.time[row]);
     for (const std::size_t s : columns) {
       const float value = log.column[s][row];
@@ -88,10 +88,10 @@ std::string signals_csv(const ExportArguments& arguments, const lab::Log& log, d
   return fmt::to_string(out);
 }
 
-std::string events_csv(const lab::Log& log, double from, double to) {
+std::string events_csv(const lab::Log& log, const TimeSpan& span) {
   std::string out = "tick,time_s,kind,name,detail\n";
   for (const lab::LoggedEvent& e : log.events) {
-    if (e.time < from || e.time > to) continue;
+    if (e.time < span.from || e.time > span.to) continue;
     out += fmt::format("{},{:.9f},{},{},{}\n", e.tick, e.time, quoted(e.kind), quoted(e.name),
                        quoted(e.detail));
   }
@@ -99,22 +99,23 @@ std::string events_csv(const lab::Log& log, double from, double to) {
 }
 
 int run_export(const ExportArguments& arguments) {
-  const double from = read_time(arguments.from, "--from", 0.0);
-  const double to = read_time(arguments.to, "--to", 1e12);
-  const std::vector<std::string> paths = run_logs(arguments.log);
+  const TimeSpan span = read_span(arguments.from, arguments.to);
+  std::vector<lab::Log> logs;
+  for (const std::string& path : run_logs(arguments.log)) {
+    logs.push_back(lab::read_log(path, {.all_rows = arguments.all, .inputs = false}));
+  }
+  require_part_of(logs, span);
   std::string text;
-  for (const std::string& path : paths) {
-    const lab::Log log = lab::read_log(path, {.all_rows = arguments.all, .inputs = false});
-    if (!log.complete) fmt::print(stderr, "warning: the log '{}' was cut off\n", path);
-    std::string part =
-        arguments.events ? events_csv(log, from, to) : signals_csv(arguments, log, from, to);
+  for (const lab::Log& log : logs) {
+    if (!log.complete) fmt::print(stderr, "warning: the log '{}' was cut off\n", log.path);
+    std::string part = arguments.events ? events_csv(log, span) : signals_csv(arguments, log, span);
     if (!text.empty()) {
       const std::size_t head = part.find('\n') + 1;
       if (text.compare(0, head, part, 0, head) != 0) {
         throw std::runtime_error(fmt::format(
             "the run goes on in '{}' with other signals: export its logs one by one, or choose "
             "with --signals what all have",
-            path));
+            log.path));
       }
       part.erase(0, head);
     }

@@ -35,11 +35,9 @@ std::string text_beside(const std::filesystem::path& log, const char* name) {
 
 // The requested part of a log.
 lab::Log part_of(lab::Log log, const ReportArguments& arguments) {
-  constexpr double kEver = std::numeric_limits<double>::infinity();
-  const double from = read_time(arguments.from, "--from", -kEver);
-  const double to = read_time(arguments.to, "--to", kEver);
-  if (arguments.from.empty() && arguments.to.empty()) return log;
-  lab::Log part = lab::log_window(log, from, to);
+  const TimeSpan span = read_span(arguments.from, arguments.to);
+  if (!span.is_part) return log;
+  lab::Log part = lab::log_window(log, span.from, span.to);
   if (part.rows() == 0) {
     throw std::runtime_error("--from, --to: '" + log.path + "' has no rows between these times");
   }

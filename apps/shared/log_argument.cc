@@ -45,4 +45,16 @@ lab::Log read_whole_log(const std::string& argument) {
   return log;
 }
 
+void require_part_of(const std::vector<lab::Log>& logs, const TimeSpan& span) {
+  double first = 0.0, last = 0.0;
+  for (const lab::Log& log : logs) {
+    if (log.rows() > 0) last = std::max(last, log.time.back());
+    if (!log.events.empty()) last = std::max(last, log.events.back().time);
+  }
+  if (!logs.empty() && logs.front().rows() > 0) first = logs.front().time.front();
+  if (span.from <= last && span.to >= first) return;
+  throw std::runtime_error(
+      fmt::format("--from, --to: error: the run is from {:.3f} s to {:.3f} s", first, last));
+}
+
 }  // namespace footfall::apps

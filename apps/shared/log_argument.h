@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/shared/time_option.h"
 #include "lab/log/reader.h"
 
 namespace footfall::apps {
@@ -17,5 +18,8 @@ std::vector<std::string> run_logs(const std::string& argument);
 // Reads all rows and inputs; prints a note on stderr if the log is truncated. Throws
 // std::runtime_error.
 lab::Log read_whole_log(const std::string& argument);
+
+// Throws std::runtime_error that names the run's times if its logs have nothing of the span.
+void require_part_of(const std::vector<lab::Log>& logs, const TimeSpan& span);
 
 }  // namespace footfall::apps

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "core/diagnostics/quantity_hint.h"
@@ -19,6 +20,17 @@ double read_time(const std::string& text, const char* option) {
 
 double read_time(const std::string& text, const char* option, double otherwise) {
   return text.empty() ? otherwise : read_time(text, option);
+}
+
+TimeSpan read_span(const std::string& from, const std::string& to) {
+  constexpr double kEver = std::numeric_limits<double>::infinity();
+  const TimeSpan span = {read_time(from, "--from", -kEver), read_time(to, "--to", kEver),
+                         !from.empty() || !to.empty()};
+  if (span.to < span.from) {
+    throw std::runtime_error(
+        fmt::format("--from, --to: error: {:g} s is before {:g} s", span.to, span.from));
+  }
+  return span;
 }
 
 }  // namespace footfall::apps

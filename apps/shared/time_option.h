@@ -11,4 +11,12 @@ double read_time(const std::string& text, const char* option);
 // The same; `otherwise` for an empty text, an option that was not given.
 double read_time(const std::string& text, const char* option, double otherwise);
 
+// The part of a run that `--from` and `--to` ask for, s; all of it without them.
+struct TimeSpan {
+  double from, to;
+  bool is_part;
+};
+// Throws std::runtime_error as read_time() does, and if it ends before it begins.
+TimeSpan read_span(const std::string& from, const std::string& to);
+
 }  // namespace footfall::apps

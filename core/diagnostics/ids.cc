@@ -122,7 +122,9 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"unknown-group", kError, "a joint group or foot that the robot does not have"},
     {"unknown-internal", kError, "an internal force that is not active"},
     {"unknown-key", kError, "a key that does not exist here"},
-    {"unknown-name", kError, "a joint, contact, group, point or body that the robot does not have"},
+    {"unknown-name", kError,
+     "a joint, contact, group, point or body that the robot does not have; a figure that no run "
+     "has"},
     {"unknown-parameter", kError, "a parameter that is not listed"},
     {"unknown-planner", kError, "a planner that is not listed"},
     {"unknown-point", kError, "a point that the robot does not have"},

@@ -43,6 +43,7 @@ ScenarioJudge::ScenarioJudge(const ScenarioDescription& scenario, const engine::
     if (expectation.expression >= 0) {
       judged.operands = operands_of(scenario.expressions, expectation.expression);
       judged.values.assign(judged.operands.size(), kNan);
+      judged.had_value.assign(judged.operands.size(), false);
     }
     for (const SignalStatistic& of : scenario.statistics) {
       if (std::ranges::find(judged.operands, of.value) == judged.operands.end()) continue;
@@ -81,6 +82,7 @@ void ScenarioJudge::observe() {
         break;
       case Expectation::Kind::never:
         judged.judged = true;
+        note_values(judged);
         if (evaluate(judged)) {
           mark(judged);
           judged.decided = true;
@@ -101,6 +103,12 @@ bool ScenarioJudge::evaluate(const Judged& judged) {
   const double value =
       behaviors::evaluate(scenario_.expressions, judged.expectation->expression, context);
   return std::isfinite(value) && value != 0.0;
+}
+
+void ScenarioJudge::note_values(Judged& judged) const {
+  for (std::size_t k = 0; k < judged.operands.size(); ++k) {
+    if (std::isfinite(signals_[judged.operands[k]])) judged.had_value[k] = true;
+  }
 }
 
 // This tick is where it was decided, as far as is known.

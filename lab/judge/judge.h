@@ -43,9 +43,10 @@ class ScenarioJudge {
     bool at_end = false;               // a lone condition: judged once, when the run ends
     std::vector<int> operands;         // signals it speaks of
     std::vector<Running> statistics;
-    bool judged = false;   // at least once
-    bool holds = false;    // at the latest tick
-    bool decided = false;  // nothing can change it
+    std::vector<bool> had_value;  // of each operand, in some tick
+    bool judged = false;          // at least once
+    bool holds = false;           // at the latest tick
+    bool decided = false;         // nothing can change it
     Place place;
     std::vector<double> values;  // of the operands, at the place
     // Of a sequence: by length of what was passed, when that began (latest) and the entries seen.
@@ -57,11 +58,14 @@ class ScenarioJudge {
   Place here() const;
   void take_signals();
   bool evaluate(const Judged& judged);
+  void note_values(Judged& judged) const;
   void mark(Judged& judged);
   void observe_that(Judged& judged);
   void observe_sequence(Judged& judged);
   void update(Running& running);
-  std::string not_reached() const;
+  std::string not_reached(const Judged& judged) const;
+  bool is_cut(const Judged& judged) const;
+  std::string never_had_value(const Judged& judged) const;
   void finish_never(const Judged& judged, ExpectationOutcome& out) const;
   void finish_that(Judged& judged, ExpectationOutcome& out);
   void finish_sequence(const Judged& judged, ExpectationOutcome& out);

@@ -64,20 +64,39 @@ std::vector<ExpectationOutcome> ScenarioJudge::finish(const RunResult& result) {
   return outcomes;
 }
 
-std::string ScenarioJudge::not_reached() const {
+// Whether the run ended before the end of a time that was asked for: what it would have done in
+// the rest is not known.
+bool ScenarioJudge::is_cut(const Judged& judged) const {
+  const std::optional<double>& to = judged.expectation->to;
+  return to && loop_.time() + 0.5 * loop_.period() < *to;
+}
+
+// A condition over what is never there says nothing. Empty: each operand had a value once.
+std::string ScenarioJudge::never_had_value(const Judged& judged) const {
+  for (std::size_t k = 0; k < judged.operands.size(); ++k) {
+    if (judged.had_value[k]) continue;
+    return fmt::format("'{}' never had a value in this time: it was not judged",
+                       scenario_.signals.info(judged.operands[k]).name);
+  }
+  return {};
+}
+
+std::string ScenarioJudge::not_reached(const Judged& judged) const {
+  if (judged.first > judged.last) return "no tick is in this time";
   const std::string why = result_->cause ? ending_text(*result_, loop_.time())
                                          : fmt::format("the run ended at {:.3f} s", loop_.time());
-  return why + ", before it could be judged";
+  return why + (judged.judged ? ", before this time was over" : ", before it could be judged");
 }
 
 // A fall or a fault decides what its tick did: the states that it leads to are consequences.
 void ScenarioJudge::finish_never(const Judged& judged, ExpectationOutcome& out) const {
-  out.passed = judged.judged && !judged.decided;
-  if (out.passed) return;
-  if (!judged.judged) {
-    out.why = not_reached();
+  if (!judged.judged || (!judged.decided && is_cut(judged))) {
+    out.why = not_reached(judged);
     return;
   }
+  if (!judged.decided) out.why = never_had_value(judged);
+  out.passed = !judged.decided && out.why.empty();
+  if (!judged.decided) return;
   const bool at_the_end = result_->cause && judged.place.tick == last_.tick;
   out.why =
       at_the_end ? "it became so when " + ending_text(*result_, loop_.time()) : "it became so";
@@ -94,11 +113,12 @@ void ScenarioJudge::finish_that(Judged& judged, ExpectationOutcome& out) {
   }
   const bool every_tick =
       !judged.at_end && judged.statistics.empty() && !judged.expectation->within;
-  out.passed = judged.judged && (every_tick ? !judged.decided : judged.holds);
-  if (!judged.judged) {
-    out.why = not_reached();
+  const bool holds = every_tick ? !judged.decided : judged.holds;
+  if (!judged.judged || (holds && !judged.expectation->within && is_cut(judged))) {
+    out.why = not_reached(judged);
     return;
   }
+  out.passed = holds;
   if (out.passed && every_tick) return;  // no one tick speaks for all
   if (!judged.statistics.empty() && (out.passed || judged.place.tick < 0)) {
     judged.place = judged.statistics.front().decided_at;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -178,6 +179,31 @@ Json variation_json(const RunIdentity& id) {
     out[name] = values.size() == 1 ? Json(values.front()) : Json(values);
   }
   return out;
+}
+
+std::vector<std::string> figure_names() {
+  RunResult result;  // in which every figure has a value
+  RunFigures& f = result.figures;
+  f.steps = 2;
+  f.placements = 1;
+  for (ErrorFigure* error : {&f.roll, &f.pitch, &f.yaw, &f.height}) error->add(0.0);
+  result.end = RunEnd::finished;
+  result.allocations = 0;
+  std::vector<std::string> names;
+  const Json flat = summary_json({}, result).flatten();
+  for (const auto& [path, value] : flat.items()) {
+    if (!value.is_number() && !value.is_boolean()) continue;
+    std::string name = path.substr(1);
+    std::ranges::replace(name, '/', '.');
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+bool is_figure_of_a_part(std::string_view name) {
+  constexpr std::array<std::string_view, 5> kWhole = {"faults.", "fault_ticks.", "internal_force.",
+                                                      "worst_fault.", "variation."};
+  return std::ranges::any_of(kWhole, [&](std::string_view w) { return name.starts_with(w); });
 }
 
 std::vector<UnusedTorqueLoop> unused_torque_loops(const behaviors::Behavior& behavior,

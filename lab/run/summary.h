@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lab/run/run.h"
@@ -37,6 +38,11 @@ nlohmann::ordered_json variation_json(const RunIdentity& id);
 
 // What summary_json says of the figures, and a page of a part of a run.
 nlohmann::ordered_json figures_json(const RunFigures& figures);
+
+// Names of the numbers of a summary, `error.pitch.max`; true for `faults.NAME`,
+// `internal_force.NAME.rms` and the like, too, whose NAME is the behavior's.
+std::vector<std::string> figure_names();
+bool is_figure_of_a_part(std::string_view name);
 
 // `physics_only` leaves out what a wall clock measured (tick_us, real_time_factor).
 nlohmann::ordered_json summary_json(const RunIdentity& id, const RunResult& result,

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/value_reader.h"
+#include "lab/run/summary.h"
 #include "lab/suite/discovery.h"
 #include "lab/sweep/plan/axes.h"
 #include "lab/sweep/plan/keys.h"
@@ -189,9 +191,16 @@ void read_figures(SweepReader& reader, const YamlNode& root) {
   const YamlNode* node = root.find("figures");
   if (node == nullptr) return;
   if (!core::expect_sequence(*node, "a list of figures", reader.diagnostics)) return;
+  const std::vector<std::string> known = figure_names();
   for (const YamlNode& item : node->items) {
     const auto name = core::read_text(item, reader.diagnostics, "the name of a figure");
-    if (name) reader.sweep.figures.push_back(*name);
+    if (!name) continue;
+    if (std::ranges::find(known, *name) == known.end() && !is_figure_of_a_part(*name)) {
+      reader.diagnostics.error(item.mark, "unknown-name",
+                               fmt::format("'{}' is no figure of a run (see `run --json`){}", *name,
+                                           core::did_you_mean(*name, known)));
+    }
+    reader.sweep.figures.push_back(*name);
   }
 }
 

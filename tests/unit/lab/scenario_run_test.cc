@@ -50,6 +50,9 @@ class ScenarioRunTest : public testing::Test {
     std::ofstream(folder_ / "short.yaml")
         << "base: laps.yaml\nmachine:\n  transitions+: [{after: 200 ms, to: over}]\n"
            "  states: {over: {type: final}}\n";
+    std::ofstream(folder_ / "lean.yaml")
+        << "base: laps.yaml\nmachine:\n  states:\n    gone:\n      tasks: {lean: {type: "
+           "body_orientation, axes: [pitch], reference: 0, gains: {kp: 100, kd: 20}}}\n";
   }
   ~ScenarioRunTest() override { std::filesystem::remove_all(folder_); }
 
@@ -242,17 +245,32 @@ TEST_F(ScenarioRunTest, AFallTellsItsCriterionAndStateAndWhatItBroughtAbout) {
   EXPECT_TRUE(never.why.starts_with("it became so when the robot fell: torso ")) << never.why;
 }
 
-TEST_F(ScenarioRunTest, AWindowThatTheRunDoesNotReachIsNotJudgedAsPassed) {
-  file_ = "short.yaml";  // over after 0.2 s
-  for (const char* condition : {"{never: \"base.pos.z > 0 m\", between: [300 ms, 400 ms]}",
-                                "{that: \"base.pos.z > 0 m\", between: [300 ms, 400 ms]}",
-                                "{never: in(gone), after: 300 ms}"}) {
-    const ScenarioRun done = run(std::string("expect:\n  - ") + condition + "\n");
-    EXPECT_FALSE(done.outcome.passed) << condition;
-    EXPECT_EQ(done.outcome.expectations[0].why,
-              "the run ended at 0.201 s, before it could be judged")
-        << condition;
+TEST_F(ScenarioRunTest, AWindowThatTheRunDoesNotReachToItsEndIsNotJudgedAsPassed) {
+  file_ = "short.yaml";
+  const std::string ended = "the run ended at 0.201 s, before ";
+  for (const auto& [condition, why] : {
+           std::pair("never: \"base.pos.z > 0 m\", between: [300 ms, 400 ms]",
+                     "it could be judged"),
+           std::pair("that: \"base.pos.z > 0 m\", between: [300 ms, 400 ms]", "it could be judged"),
+           std::pair("never: in(gone), after: 300 ms", "it could be judged"),
+           std::pair("never: \"base.pos.z < 0 m\", between: [0.1 s, 0.4 s]", "this time was over"),
+           std::pair("that: \"base.pos.z > 0 m\", between: [0.1 s, 0.4 s]", "this time was over"),
+           std::pair("that: max(base.pos.z) > 0 m, between: [0.1 s, 0.4 s]", "this time was over"),
+       }) {
+    const ExpectationOutcome e = judge(std::string("{") + condition + "}");
+    EXPECT_FALSE(e.passed) << condition;
+    EXPECT_EQ(e.why, ended + why) << condition;
   }
+  EXPECT_EQ(judge("{that: \"base.pos.z > 0 m\", between: [100.1 ms, 100.2 ms]}").why,
+            "no tick is in this time");
+}
+
+TEST_F(ScenarioRunTest, NeverOverWhatHasNoValueIsNotJudgedAsPassed) {
+  file_ = "lean.yaml";  // `lean` is in force in `gone` only, which is not entered
+  const ScenarioRun done = run("expect:\n  - {never: task.lean.error > 1 mrad}\n");
+  EXPECT_FALSE(done.outcome.passed);
+  EXPECT_EQ(done.outcome.expectations[0].why,
+            "'task.lean.error' never had a value in this time: it was not judged");
 }
 
 TEST_F(ScenarioRunTest, ALoneConditionIsJudgedAtTheEnd) {
