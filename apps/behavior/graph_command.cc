@@ -7,6 +7,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/external_program.h"
+#include "apps/shared/output_option.h"
 #include "behaviors/explain/diagram.h"
 #include "core/process/machine_error.h"
 #include "core/text/whole_file.h"
@@ -42,6 +43,7 @@ int graph(const GraphOptions& options) {
     print_diagnostics(diagnostics);
     return kBadInput;
   }
+  require_no_input("-o", options.out, {find_behavior_file(options.file)});
   auto diagram = behaviors::load_diagram(find_behavior_file(options.file), load, diagnostics);
   print_diagnostics(diagnostics);
   if (!diagram) return kBadInput;

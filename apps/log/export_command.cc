@@ -8,6 +8,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/output_option.h"
 #include "apps/shared/time_option.h"
 #include "core/text/json_text.h"
 #include "core/text/whole_file.h"
@@ -101,7 +102,9 @@ std::string events_csv(const lab::Log& log, const TimeSpan& span) {
 int run_export(const ExportArguments& arguments) {
   const TimeSpan span = read_span(arguments.from, arguments.to);
   std::vector<lab::Log> logs;
-  for (const std::string& path : run_logs(arguments.log)) {
+  const std::vector<std::string> paths = run_logs(arguments.log);
+  require_no_input("-o", arguments.out, paths);
+  for (const std::string& path : paths) {
     logs.push_back(lab::read_log(path, {.all_rows = arguments.all, .inputs = false}));
   }
   require_part_of(logs, span);

@@ -14,6 +14,7 @@
 #include "apps/log/report_film.h"
 #include "apps/shared/external_program.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/output_option.h"
 #include "apps/shared/time_option.h"
 #include "core/text/json_text.h"
 #include "core/units/units.h"
@@ -109,6 +110,11 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
   const std::filesystem::path path(log_path(arguments.log));
   int exit_code = 0;
   try {
+    std::vector<std::string> logs = {path.string()};
+    for (const std::string& other : arguments.more) logs.push_back(log_path(other));
+    require_no_input("-o", arguments.out, logs);
+    require_no_input("--strip", arguments.strip, logs);
+    require_no_input("--film", arguments.film, logs);
     if (!arguments.more.empty()) {
       write_comparison(arguments, stream);
       return 0;

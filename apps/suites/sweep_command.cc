@@ -10,6 +10,7 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "apps/shared/output_option.h"
 #include "apps/suites/sweep_options.h"
 #include "apps/suites/sweep_setup.h"
 #include "apps/suites/sweep_slurm.h"
@@ -213,6 +214,7 @@ int sweep(const SweepCommandOptions& options) {
       options.out.empty() ? "out/sweep/" + loaded.prepared.sweep.name : options.out;
   if (!options.save.empty()) {
     if (!loaded.file.empty()) throw InputError("--save: error: it is a sweep file already");
+    require_no_input("--save", options.save, {options.plan.what});
     core::write_whole_file(options.save, core::to_yaml(loaded.tree));
     return kGood;
   }

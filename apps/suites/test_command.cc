@@ -11,6 +11,7 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "apps/shared/output_option.h"
 #include "apps/shared/time_option.h"
 #include "core/process/file_lock.h"
 #include "core/process/stop_signals.h"
@@ -129,6 +130,9 @@ std::vector<lab::SuiteScenario> choose(const TestOptions& options) {
       throw InputError("test: error: " + where + ": expected files whose first key is `scenario`");
     }
   }
+  require_no_input("--junit", options.junit, files);
+  require_no_input("--json", options.json, files);
+  require_no_input("--coverage", options.coverage, files);
   auto scenarios = lab::load_suite(files, selection, search_path());
   if (scenarios.empty() && selection.shards == 1) {
     throw InputError(

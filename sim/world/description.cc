@@ -142,7 +142,7 @@ class WorldLoader {
           core::read_choice(*model, kActuatorModels, diagnostics_, "an actuator model");
       if (choice) actuators.model = static_cast<ActuatorModel>(*choice);
     }
-    constexpr double kLongestDelay = 1.0;
+    constexpr double kLongestDelay = 0.02;  // s; the checks of gains take the delay in ticks
     read_bounded(node, "command_delay", core::kTime, 0.0, kLongestDelay, actuators.command_delay);
     read_bounded(node, "coulomb", core::kTorque, 0.0, kInfinity, actuators.coulomb);
     if (const YamlNode* coulomb = node.find("coulomb")) actuators.coulomb_mark = coulomb->mark;

@@ -214,7 +214,15 @@ std::optional<DistributionSpec> read_distribution(const YamlNode& map, std::stri
 
 void add_axis(SweepDescription& sweep, SweepGroup& group, SweepAxis axis,
               Diagnostics& diagnostics) {
-  const auto twice = [&](const SweepAxis& other) { return other.name == axis.name; };
+  // A vector and one of its values would be set one after the other: the first has no effect.
+  const auto is_part = [](const std::string& whole, const std::string& part) {
+    return part.starts_with(whole) && part.size() > whole.size() &&
+           (part[whole.size()] == '.' || part[whole.size()] == '[');
+  };
+  const auto twice = [&](const SweepAxis& other) {
+    return other.name == axis.name || is_part(other.name, axis.name) ||
+           is_part(axis.name, other.name);
+  };
   if (std::ranges::any_of(sweep.axes, twice)) {
     diagnostics.error(axis.mark, "duplicate", fmt::format("'{}' is given values twice", axis.name));
   }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/process/machine_error.h"
 #include "core/text/json_text.h"
 #include "lab/run/utc_time.h"
 #include "lab/sweep/results/sqlite_statement.h"
@@ -156,7 +157,12 @@ SweepStore::SweepStore(const std::string& path, Access access)
     }
   } catch (const SqliteError& error) {
     const std::string why = error.what();
+    const int code = sqlite3_errcode(db_) & 0xff;  // without the extended part
     sqlite3_close(db_);
+    const bool refused = code == SQLITE_CANTOPEN && access == Access::write;
+    if (code == SQLITE_IOERR || code == SQLITE_FULL || refused) {
+      throw core::MachineError(fmt::format("{}: {}", path, why));
+    }
     throw SweepStoreError(fmt::format("'{}' is no file of results: {}", path, why));
   }
 }

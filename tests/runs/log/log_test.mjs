@@ -76,14 +76,21 @@ try {
     });
   }
   const [head, ...lines] = footfall('export', folder, '--csv', '--all').trim().split('\n');
-  expect(head.split(',').length === signals.length + 2, 'columns of the CSV');
+  // `tick`, then the signals by their names, the state by its path.
+  const [, ...exported] = head.split(',');
+  const states = JSON.parse(metadata.run.get('states'));
+  expect(new Set(exported).size === signals.length, 'each signal is a column of the CSV, once');
+  const places = exported.map((name) => signals.findIndex((signal) => signal.name === name));
+  expect(!places.includes(-1), 'columns of the CSV are named as the signals');
   expect(lines.length === rows.size && rows.size > 250, `${lines.length} lines, ${rows.size} rows`);
   for (const line of lines) {
-    const [tick, , ...cells] = line.split(',');
-    cells.forEach((cell, s) => {
-      const value = rows.get(Number(tick))?.[s];
-      const same = cell === '' ? Number.isNaN(value) : Math.fround(Number(cell)) === value;
-      expect(same, `tick ${tick} ${signals[s].name}: ${cell} exported, ${value} here`);
+    const [tick, ...cells] = line.split(',');
+    cells.forEach((cell, k) => {
+      const value = rows.get(Number(tick))?.[places[k]];
+      const same = exported[k] === 'state' ? states[value] === cell
+        : exported[k] === 'time' ? Math.abs(Number(cell) - value) < 1e-6
+        : cell === '' ? Number.isNaN(value) : Math.fround(Number(cell)) === value;
+      expect(same, `tick ${tick} ${exported[k]}: ${cell} exported, ${value} here`);
     });
   }
 

@@ -75,6 +75,21 @@ class Logs(unittest.TestCase):
         self.assertEqual(events.returncode, 0, events.stderr)
         self.assertIn(",end,time,", (self.folder / "events.csv").read_text())
 
+    def test_a_time_that_is_not_in_the_run_is_no_empty_answer(self):
+        for command in (("export", "a", "--csv"), ("events", "a"), ("report", "a", "-o", "x.html")):
+            self.refused(self.footfall(*command, "--from", "0.4s", "--to", "0.3s"), "0.3 s is before 0.4 s")
+        for command in (("export", "a", "--csv"), ("events", "a")):
+            self.refused(self.footfall(*command, "--from", "6s"), "the run is from 0.000 s to 0.800 s")
+
+    def test_no_output_takes_the_place_of_what_is_read(self):
+        before = (self.folder / "a" / "log.mcap").read_bytes()
+        (self.folder / "link.mcap").symlink_to("a/log.mcap")
+        for out in ("a/log.mcap", "link.mcap"):
+            self.refused(self.footfall("export", "a", "--csv", "-o", out), "-o", "this command reads")
+            self.refused(self.footfall("report", "b", "a", "-o", out), "-o", "this command reads")
+            self.refused(self.footfall("report", "a", "-o", "x.html", "--strip", out), "--strip", "this command reads")
+        self.assertEqual((self.folder / "a" / "log.mcap").read_bytes(), before)
+
     def test_what_is_no_log(self):
         (self.folder / "text.mcap").write_text("text")
         for command in (["replay"], ["why"], ["export"], ["diff", "a"]):

@@ -144,6 +144,8 @@ class Input(SweepCase):
                                  (["--vary", "world.ground.friction=[-1]"], "world.ground.friction"),
                                  (["--faults", "none,mocap.gone"], "mocap.dropout"),
                                  (["--faults", "mocap.dropout@90s", "--for", "5s"], "behind the end"),
+                                 (["--figure", "error.picth.max"], "did you mean 'error.pitch.max'"),
+                                 (["--vary", "goal.x=[1 m]", "--vary", "goal=[[0 m, 0 m]]"], "given values twice"),
                                  (["--count", "5"], "give --sample"),
                                  (["--shard", "3/2"], "--shard")):
             self.sweep(*arguments, expect=2)
@@ -177,6 +179,11 @@ class Input(SweepCase):
         self.sweep(*VARY, "--seeds", "1..2")
         self.sweep(what=str(path))
         self.assertIn("0/0 runs (4 done before)", self.stdout)
+
+    def test_a_full_disk_is_told_as_the_machines_refusal(self):
+        command_line = ["sh", "-c", 'ulimit -f 4; exec "$@"', "-", *self.command(*VARY)]
+        self.run_it(command_line, expect=3)
+        self.assertIn("sweep.sqlite: disk I/O error", self.stderr)
 
     def test_list_prints_every_command(self):
         self.sweep(*VARY, "--seeds", "1..3", "--list")

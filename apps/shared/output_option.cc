@@ -1,0 +1,24 @@
+// Compares outputs with inputs; see output_option.h.
+#include "apps/shared/output_option.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "apps/shared/commands.h"
+
+namespace footfall::apps {
+
+void require_no_input(const char* option, const std::string& output,
+                      const std::vector<std::string>& inputs) {
+  if (output.empty() || output == "-") return;
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(output, error)) return;
+    if (!std::filesystem::equivalent(output, input, error)) continue;
+    throw InputError(
+        fmt::format("{}: error: '{}' is a file that this command reads", option, output));
+  }
+}
+
+}  // namespace footfall::apps
