@@ -185,28 +185,29 @@ std::vector<engine::EditBatch> goal_edits(const behaviors::Behavior& behavior,
   const int slot = behavior.planners.front().goal_slot;
   const behaviors::ParameterInfo& owner =
       behavior.parameters[static_cast<std::size_t>(behavior.parameter_of_slot(slot))];
-  const auto to = [&](const std::array<double, 2>& goal, double over) {
-    engine::EditBatch edit;
-    edit.source = engine::EditSource::command;
-    edit.values = {{slot, goal[0]}, {slot + 1, goal[1]}};
-    edit.over = over;
-    return edit;
+  const auto edit = [](std::vector<behaviors::SlotValue> values, double over) {
+    engine::EditBatch batch;
+    batch.source = engine::EditSource::command;
+    batch.values = std::move(values);
+    batch.over = over;
+    return batch;
   };
   std::vector<engine::EditBatch> edits;
   const auto x = behavior.values.begin() + slot;
   const std::array<double, 2> start = spec.goal.value_or(std::array<double, 2>{x[0], x[1]});
-  if (spec.goal) edits.push_back(to(start, 0.0));
+  if (spec.goal) edits.push_back(edit({{slot, start[0]}, {slot + 1, start[1]}}, 0.0));
   if (!spec.goal_velocity) return edits;
-  // Until the run ends, or the goal's range does.
-  double time = spec.max_time > 0.0 ? spec.max_time : kLongestMotion;
-  std::array<double, 2> end = start;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double v = (*spec.goal_velocity)[k];
-    if (v == 0.0 || !owner.has_range()) continue;
-    time = std::min(time, std::max(0.0, ((v > 0.0 ? owner.max : owner.min) - start[k]) / v));
+  // Each axis until the run ends, or its range does: the other goes on.
+  for (int k = 0; k < 2; ++k) {
+    const double v = (*spec.goal_velocity)[static_cast<std::size_t>(k)];
+    const double begin = start[static_cast<std::size_t>(k)];
+    if (v == 0.0) continue;
+    double time = spec.max_time > 0.0 ? spec.max_time : kLongestMotion;
+    if (owner.has_range()) {
+      time = std::min(time, std::max(0.0, ((v > 0.0 ? owner.max : owner.min) - begin) / v));
+    }
+    edits.push_back(edit({{slot + k, begin + v * time}}, time));
   }
-  for (std::size_t k = 0; k < 2; ++k) end[k] += (*spec.goal_velocity)[k] * time;
-  edits.push_back(to(end, time));
   return edits;
 }
 

@@ -245,5 +245,20 @@ TEST(Run, AGoalVelocityMovesTheGoal) {
   }
 }
 
+// One axis at the end of its range does not stop the other.
+TEST(Run, AGoalVelocityGoesOnAlongTheAxisThatHasRoom) {
+  Rig rig("balance");
+  lab::RunSpec spec;
+  spec.max_time = 1.0;
+  spec.goal = {{999.95, 0.0}};  // its range ends at 1000
+  spec.goal_velocity = {{0.1, 0.05}};
+  const std::vector<engine::EditBatch> edits = lab::goal_edits(*rig.behavior, spec);
+  ASSERT_EQ(edits.size(), 3U);
+  EXPECT_NEAR(edits[1].over, 0.5, 1e-9);
+  EXPECT_NEAR(edits[1].values.at(0).second, 1000.0, 1e-9);
+  EXPECT_EQ(edits[2].over, 1.0);
+  EXPECT_NEAR(edits[2].values.at(0).second, 0.05, 1e-12);
+}
+
 }  // namespace
 }  // namespace footfall::tests
