@@ -1,4 +1,6 @@
 // Random numbers of a seed; see variation.h.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -62,9 +64,45 @@ bool is_drawn(const Spread& spread) { return spread.kind != Spread::Kind::none; 
 
 }  // namespace
 
+double Spread::least() const {
+  if (kind == Kind::none) return 0.0;
+  return kind == Kind::normal ? -kCut * a : a;
+}
+
+double Spread::most() const {
+  if (kind == Kind::none) return 0.0;
+  if (kind == Kind::normal) return kCut * a;
+  return kind == Kind::fixed ? a : b;
+}
+
 std::optional<double> Variation::least_friction() const {
   if (!is_drawn(friction)) return std::nullopt;
-  return friction.a;  // fixed, or where the range begins
+  return friction.least();
+}
+
+double Variation::most_command_delay() const { return command_delay.most(); }
+
+std::string start_beyond_limits(const Variation& variation, const RobotDescription& robot) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr double kRounding = 1e-9;  // rad
+  const Spread& spread = variation.joints;
+  if (!is_drawn(spread)) return {};
+  const JointDescription* worst = nullptr;
+  double beyond = kRounding;
+  for (const JointDescription& joint : robot.joints) {
+    const double here = std::max(joint.position_min - (joint.posture + spread.least()),
+                                 joint.posture + spread.most() - joint.position_max);
+    if (here <= beyond) continue;
+    beyond = here;
+    worst = &joint;
+  }
+  if (worst == nullptr) return {};
+  return fmt::format(
+      "{}: error: joint '{}' could begin {:.3g} deg beyond its limits: it is drawn between {:.3g} "
+      "and {:.3g} deg from its posture of {:.3g} deg, and its limits are {:.3g} and {:.3g} deg",
+      variation.joints_place, worst->name, beyond / kDegree, spread.least() / kDegree,
+      spread.most() / kDegree, worst->posture / kDegree, worst->position_min / kDegree,
+      worst->position_max / kDegree);
 }
 
 Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,

@@ -128,6 +128,22 @@ TEST(SampledLoop, GrowthIsThatOfTheLoopItselfWithIntegralsAndDelays) {
   }
 }
 
+// The checks judge the most delay that a seed can draw, and none below it.
+TEST(SampledLoop, MoreDelayNeverMakesALoopStable) {
+  for (const double kp : {0.0, 50.0, 1e3, 3e4, 1e6}) {
+    for (const double kd : {5.0, 100.0, 800.0, 2000.0, 2900.0}) {
+      for (const double ki : {0.0, 0.5 * kp * kd}) {
+        bool stable = true;
+        for (int late = 0; late < 14; ++late) {
+          const bool now = growth(simulated(kp, ki, kd, 2, late * kPeriod / 2.0)) <= 1.0 + 1e-9;
+          EXPECT_TRUE(stable || !now) << kp << ' ' << ki << ' ' << kd << ' ' << late;
+          stable = now;
+        }
+      }
+    }
+  }
+}
+
 std::string with_gains(const std::string& gains, const std::string& task = "height") {
   const std::string axes = "axes: [z], reference: entry, ";
   std::string tasks = "      height: {type: com_position, " + axes +
