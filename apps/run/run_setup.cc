@@ -61,6 +61,8 @@ sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Beh
                                              ? std::vector<std::string>()
                                              : model::body_names(behavior.robot.model_path);
   drawn = model::draw(world.variation, behavior.robot.joint_count(), links, options.seed);
+  model::round_command_delay(drawn, world.actuators.command_delay,
+                             behavior.robot.period_s() / world.physics.steps_per_tick);
   return sim::with_draw(world, drawn);
 }
 

@@ -12,6 +12,7 @@ namespace footfall::model {
 namespace {
 
 constexpr double kCut = 3.0;  // standard deviations
+constexpr const char* kDelayName = "command_delay_s";
 
 // The order is part of what a seed means: new quantities go to the end.
 enum class Stream : std::uint32_t {
@@ -148,7 +149,7 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
   }
   if (is_drawn(v.command_delay)) {
     out.command_delay = Source(seed, Stream::command_delay).of(v.command_delay);
-    tell("command_delay_s", {*out.command_delay});
+    tell(kDelayName, {*out.command_delay});
   }
   if (v.push.impulse > 0.0) {
     Source source(seed, Stream::push);
@@ -163,6 +164,14 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
     tell("push.direction_rad", {push.direction});
   }
   return out;
+}
+
+void round_command_delay(Draw& drawn, double own, double step) {
+  if (!drawn.command_delay) return;
+  *drawn.command_delay = std::round((own + *drawn.command_delay) / step) * step - own;
+  for (auto& [name, values] : drawn.values) {
+    if (name == kDelayName) values = {*drawn.command_delay};
+  }
 }
 
 }  // namespace footfall::model

@@ -85,6 +85,10 @@ struct Draw {
   std::vector<std::pair<std::string, std::vector<double>>> values;
 };
 
+// Makes the drawn delay the one that acts: with the world's `own` it is of whole steps of the
+// physics.
+void round_command_delay(Draw& drawn, double own, double step);
+
 // Each quantity has a stream of random numbers of its own: to pin one leaves the others as they
 // are. `links`: names of the robot's bodies.
 Draw draw(const Variation& variation, int joints, const std::vector<std::string>& links,

@@ -144,6 +144,25 @@ TEST(Variation, TheMostDelayIsWhatChecksCountOn) {
   EXPECT_EQ((Spread{Spread::Kind::normal, 0.1, 0.0}.most()), 3.0 * 0.1);
 }
 
+TEST(Variation, TheDelayThatIsToldIsTheOneThatActs) {
+  const double step = 1.0 / 3000.0;
+  const Variation v = read("command_delay: {range: [0 s, 667 us]}");
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    for (const double own : {0.0, 2e-3}) {
+      Draw drawn = draw(v, 0, {}, seed);
+      const auto acts = std::llround((own + *drawn.command_delay) / step);  // as the simulator does
+      model::round_command_delay(drawn, own, step);
+      EXPECT_NEAR(own + *drawn.command_delay, static_cast<double>(acts) * step, 1e-15);
+      EXPECT_EQ(std::llround((own + *drawn.command_delay) / step), acts);
+      EXPECT_EQ(drawn.values,
+                (decltype(drawn.values){{"command_delay_s", {*drawn.command_delay}}}));
+    }
+  }
+  Draw none;
+  model::round_command_delay(none, 0.0, step);
+  EXPECT_FALSE(none.command_delay.has_value());
+}
+
 TEST(Variation, MistakesAreTold) {
   EXPECT_NE(problems("frition: 0.8").find("did you mean 'friction'?"), std::string::npos);
   EXPECT_NE(problems("friction: {sd: 0.1}").find("1:11: error: a friction is no difference"),

@@ -118,6 +118,8 @@ class Check(Case):
             self.refused(self.footfall("check", path), 2, said)
             self.refused(self.run_it(path), 2, said)
         self.assertEqual(self.footfall("check", self.write("u.yaml", scenario.format("p.yaml"))).returncode, 0)
+        told = json.loads(self.run_it("balance", "--world", "varied", "--for", "10ms", "--json").stdout)["variation"]
+        self.assertIn(round(told["command_delay_s"] * 3000, 6), (0, 1, 2))  # whole steps of the physics
         off = self.run_it(quick, "--world", late, "--for", "10ms", "--variation", "off")
         self.assertEqual(off.returncode, 0, off.stderr)
 
