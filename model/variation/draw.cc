@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "core/random.h"
 #include "model/variation/variation.h"
 
 namespace footfall::model {
@@ -47,7 +48,7 @@ class Source {
     }
     return 0.0;
   }
-  double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
+  double uniform() { return core::uniform(random_); }
 
  private:
   double normal() {
@@ -58,7 +59,7 @@ class Source {
   }
 
   std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
+  core::Normal normal_;
 };
 
 bool is_drawn(const Spread& spread) { return spread.kind != Spread::Kind::none; }
