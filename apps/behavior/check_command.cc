@@ -86,7 +86,12 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
   const std::vector<std::string> folders = core::search_from(scenario.path, search_path());
   const std::string path = beside.empty() ? sim::find_world_file(scenario.world, folders) : beside;
   if (!path.empty()) {
-    return physics_world(sim::load_world(path, diagnostics));
+    sim::WorldDescription world = sim::load_world(path, diagnostics);
+    if (scenario.variation) {
+      core::Diagnostics ignored;  // reported by the loader
+      world.variation = model::read_variation(*scenario.variation, world.variation, ignored);
+    }
+    return physics_world(world);
   }
   if (scenario.world_mark.line > 0) {
     diagnostics.error(scenario.world_mark, "cannot-read",

@@ -145,7 +145,8 @@ int run_behavior(RunOptions options) {
         "--film: error: a film is made from the log with the report: leave out --no-log and "
         "--no-report");
   }
-  const sim::WorldDescription declared = load_world(options.world);
+  sim::WorldDescription declared = load_world(options.world);
+  if (options.variation == "off") declared.variation = {};
   const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
@@ -167,11 +168,11 @@ int run_behavior(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware),
                          drawn.values};
-  const auto link = attach_link(options, loop, world, spec);
+  const auto link = attach_link(options, loop, physics, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
-  LiveFiles live = watch_files(options, loop, *backend.hardware, world, spec);
+  LiveFiles live = watch_files(options, loop, *backend.hardware, world, physics, spec);
   spec.reloads = live.reloads.get();
 
   const lab::RunResult result = lab::run(loop, spec);

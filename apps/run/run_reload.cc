@@ -23,7 +23,8 @@ void clear_line() {
 }
 
 lab::ReloadSetup reload_setup(const RunOptions& options, hal::Hardware& hardware,
-                              const sim::WorldDescription& world) {
+                              const sim::WorldDescription& world,
+                              const behaviors::PhysicsWorld& physics) {
   lab::ReloadSetup setup;
   setup.hardware = &hardware;
   setup.load.search = search_path();
@@ -31,7 +32,7 @@ lab::ReloadSetup reload_setup(const RunOptions& options, hal::Hardware& hardware
   core::Diagnostics ignored;  // reported when they were split before
   setup.load.set = split_settings(options.set, ignored);
   setup.source = log_source(options, world);
-  setup.world = physics_world(world);
+  setup.world = physics;
   if (!options.no_log) setup.folder = options.log;
   setup.print = [](const core::Diagnostics& diagnostics) {
     clear_line();
@@ -47,10 +48,11 @@ lab::ReloadSetup reload_setup(const RunOptions& options, hal::Hardware& hardware
 }  // namespace
 
 LiveFiles watch_files(const RunOptions& options, engine::ControlLoop& loop, hal::Hardware& hardware,
-                      const sim::WorldDescription& world, const lab::RunSpec& spec) {
+                      const sim::WorldDescription& world, const behaviors::PhysicsWorld& physics,
+                      const lab::RunSpec& spec) {
   LiveFiles live;
   if (!options.reload) return live;
-  lab::ReloadSetup setup = reload_setup(options, hardware, world);
+  lab::ReloadSetup setup = reload_setup(options, hardware, world, physics);
   setup.live = spec.live;
   setup.said = spec.said;
   live.reloads = std::make_unique<lab::Reloads>(loop, std::move(setup));

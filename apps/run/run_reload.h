@@ -15,8 +15,10 @@ struct LiveFiles {
   std::unique_ptr<engine::FileWatch> watch;
 };
 
-// hardware: of the loop; spec: of the run. All must outlive the result.
+// hardware: of the loop; world: as drawn; physics: as changed files are checked; spec: of the run.
+// All must outlive the result.
 LiveFiles watch_files(const RunOptions& options, engine::ControlLoop& loop, hal::Hardware& hardware,
-                      const sim::WorldDescription& world, const lab::RunSpec& spec);
+                      const sim::WorldDescription& world, const behaviors::PhysicsWorld& physics,
+                      const lab::RunSpec& spec);
 
 }  // namespace footfall::apps

@@ -51,6 +51,7 @@ CheckedScenario load_checked(const RunOptions& options) {
     core::Diagnostics ignored;  // the loader has told
     world.variation = model::read_variation(*scenario.variation, world.variation, ignored);
   }
+  if (options.variation == "off") world.variation = {};
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics, physics_world(world));
@@ -124,7 +125,7 @@ int run_scenario_file(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(behavior, sensors),
                          drawn.values};
-  const auto link = attach_link(options, loop, world, spec);
+  const auto link = attach_link(options, loop, physics_world(checked.world), spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();

@@ -55,10 +55,14 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
 sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
                                  const sim::WorldDescription& world, model::Draw& drawn) {
   if (options.variation == "off" || options.backend != "mujoco") return world;
+  const std::string beyond = model::start_beyond_limits(world.variation, behavior.robot);
+  if (!beyond.empty()) throw InputError(beyond);
   const std::vector<std::string> links = world.variation.mass.kind == model::Spread::Kind::none
                                              ? std::vector<std::string>()
                                              : model::body_names(behavior.robot.model_path);
   drawn = model::draw(world.variation, behavior.robot.joint_count(), links, options.seed);
+  model::round_command_delay(drawn, world.actuators.command_delay,
+                             behavior.robot.period_s() / world.physics.steps_per_tick);
   return sim::with_draw(world, drawn);
 }
 
@@ -165,9 +169,9 @@ lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop)
 }
 
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
-                                             const sim::WorldDescription& world,
+                                             const behaviors::PhysicsWorld& physics,
                                              lab::RunSpec& spec) {
-  auto link = make_link(options.live, loop, physics_world(world));
+  auto link = make_link(options.live, loop, physics);
   spec.live = link.get();
   if (link && !options.quiet) {
     fmt::print(options.json ? stderr : stdout, "live at {}: footfall tune{}\n", options.live.url,

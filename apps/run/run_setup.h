@@ -32,7 +32,8 @@ struct Backend {
 sim::WorldDescription load_world(const std::string& name, const std::string& beside = {},
                                  const std::string& place = {});
 // The world as this run's seed draws it, and the push that it draws into `spec`, which the backend
-// must then bring. The stub has nothing to draw.
+// must then bring. The stub has nothing to draw. Throws InputError if a joint could begin beyond
+// its limits.
 sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
                                  const sim::WorldDescription& world, model::Draw& drawn);
 void schedule_push(const model::Draw& drawn, const Backend& backend,
@@ -43,9 +44,9 @@ engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDe
 // Time, steps, pace, log rate, status line, counted allocations.
 lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop);
 // Connects a run to the network of live tuning if its options say so, and prints the address; null
-// if not. The result must outlive the run. Throws like make_link().
+// if not. Edits are checked in `physics`. The result must outlive the run. Throws like make_link().
 std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::ControlLoop& loop,
-                                             const sim::WorldDescription& world,
+                                             const behaviors::PhysicsWorld& physics,
                                              lab::RunSpec& spec);
 // Setup data recorded in the log.
 lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription& world);

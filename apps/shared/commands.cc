@@ -145,7 +145,7 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
 
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world) {
   return {world.variation.least_friction().value_or(world.friction), world.physics.steps_per_tick,
-          world.actuators.command_delay};
+          world.actuators.command_delay + world.variation.most_command_delay()};
 }
 
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,

@@ -86,7 +86,9 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(
     const std::string& path, const std::string& robot, const std::vector<std::string>& set,
     const behaviors::PhysicsWorld* world = nullptr);
 
-// What the physics checks take from a world.
+// What the physics checks take from a world, before a seed is drawn: the least friction and the
+// longest delay that can be drawn. More delay never makes a loop stable: its gain falls with
+// frequency, so that it crosses 1 once, and delay only takes phase from it there.
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world);
 
 // Prints every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is

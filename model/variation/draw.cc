@@ -1,15 +1,19 @@
 // Random numbers of a seed; see variation.h.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "core/random.h"
 #include "model/variation/variation.h"
 
 namespace footfall::model {
 namespace {
 
 constexpr double kCut = 3.0;  // standard deviations
+constexpr const char* kDelayName = "command_delay_s";
 
 // The order is part of what a seed means: new quantities go to the end.
 enum class Stream : std::uint32_t {
@@ -44,7 +48,7 @@ class Source {
     }
     return 0.0;
   }
-  double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
+  double uniform() { return core::uniform(random_); }
 
  private:
   double normal() {
@@ -55,16 +59,52 @@ class Source {
   }
 
   std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
+  core::Normal normal_;
 };
 
 bool is_drawn(const Spread& spread) { return spread.kind != Spread::Kind::none; }
 
 }  // namespace
 
+double Spread::least() const {
+  if (kind == Kind::none) return 0.0;
+  return kind == Kind::normal ? -kCut * a : a;
+}
+
+double Spread::most() const {
+  if (kind == Kind::none) return 0.0;
+  if (kind == Kind::normal) return kCut * a;
+  return kind == Kind::fixed ? a : b;
+}
+
 std::optional<double> Variation::least_friction() const {
   if (!is_drawn(friction)) return std::nullopt;
-  return friction.a;  // fixed, or where the range begins
+  return friction.least();
+}
+
+double Variation::most_command_delay() const { return command_delay.most(); }
+
+std::string start_beyond_limits(const Variation& variation, const RobotDescription& robot) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr double kRounding = 1e-9;  // rad
+  const Spread& spread = variation.joints;
+  if (!is_drawn(spread)) return {};
+  const JointDescription* worst = nullptr;
+  double beyond = kRounding;
+  for (const JointDescription& joint : robot.joints) {
+    const double here = std::max(joint.position_min - (joint.posture + spread.least()),
+                                 joint.posture + spread.most() - joint.position_max);
+    if (here <= beyond) continue;
+    beyond = here;
+    worst = &joint;
+  }
+  if (worst == nullptr) return {};
+  return fmt::format(
+      "{}: error: joint '{}' could begin {:.3g} deg beyond its limits: it is drawn between {:.3g} "
+      "and {:.3g} deg from its posture of {:.3g} deg, and its limits are {:.3g} and {:.3g} deg",
+      variation.joints_place, worst->name, beyond / kDegree, spread.least() / kDegree,
+      spread.most() / kDegree, worst->posture / kDegree, worst->position_min / kDegree,
+      worst->position_max / kDegree);
 }
 
 Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
@@ -110,7 +150,7 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
   }
   if (is_drawn(v.command_delay)) {
     out.command_delay = Source(seed, Stream::command_delay).of(v.command_delay);
-    tell("command_delay_s", {*out.command_delay});
+    tell(kDelayName, {*out.command_delay});
   }
   if (v.push.impulse > 0.0) {
     Source source(seed, Stream::push);
@@ -125,6 +165,14 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
     tell("push.direction_rad", {push.direction});
   }
   return out;
+}
+
+void round_command_delay(Draw& drawn, double own, double step) {
+  if (!drawn.command_delay) return;
+  *drawn.command_delay = std::round((own + *drawn.command_delay) / step) * step - own;
+  for (auto& [name, values] : drawn.values) {
+    if (name == kDelayName) values = {*drawn.command_delay};
+  }
 }
 
 }  // namespace footfall::model

@@ -1,6 +1,7 @@
 // `variation:` of a file: keys and reading; see variation.h.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "core/yaml/value_reader.h"
@@ -72,14 +73,29 @@ class Reader {
     if ((sd == nullptr) == (range == nullptr)) {
       diagnostics_.error(node.mark, "missing-key", "expected 'sd' or 'range', one of them");
     } else if (sd != nullptr) {
-      const auto value = read_bounded(*sd, dimension, 0.0, kInfinity, diagnostics_);
-      if (value) out = {Spread::Kind::normal, *value, 0.0};
+      out = read_normal(*sd, dimension, least, most);
     } else if (const auto ends = read_range(*range, dimension, diagnostics_)) {
       if ((*ends)[0] < least || (*ends)[1] > most) {
         diagnostics_.error(range->mark, "out-of-range",
                            fmt::format("expected a range within {:g} and {:g}", least, most));
       }
       out = {Spread::Kind::uniform, (*ends)[0], (*ends)[1]};
+    }
+    return out;
+  }
+
+  // Three standard deviations, where the distribution is cut, must lie within what can be drawn.
+  Spread read_normal(const YamlNode& sd, Dimension dimension, double least, double most) {
+    const auto value = read_bounded(sd, dimension, 0.0, kInfinity, diagnostics_);
+    if (!value) return {};
+    const Spread out = {Spread::Kind::normal, *value, 0.0};
+    constexpr double kRounding = 1e-12;
+    if (out.least() < least - kRounding || out.most() > most + kRounding) {
+      diagnostics_.error(
+          sd.mark, "out-of-range",
+          fmt::format("three standard deviations reach from {:.4g} to {:.4g}, beyond {:g} and {:g} "
+                      "(SI): expected an sd of at most {:.4g}",
+                      out.least(), out.most(), least, most, std::min(-least, most) / 3.0));
     }
     return out;
   }
@@ -97,6 +113,11 @@ class Reader {
     check_keys(node, kVariedStartKeys, diagnostics_);
     spread(node, "velocity", kVelocity, -10.0, 10.0, out.velocity);
     spread(node, "joints", kNone, -1.0, 1.0, out.joints);
+    if (const YamlNode* joints = node.find("joints")) {
+      const Mark& mark = joints->mark;
+      out.joints_place = fmt::format("{}:{}:{}", mark.file < 0 ? "" : diagnostics_.file(mark.file),
+                                     mark.line, mark.column);
+    }
     spread(node, "rates", kRate, -10.0, 10.0, out.rates);
   }
 

@@ -13,6 +13,7 @@
 #include "core/diagnostics/diagnostics.h"
 #include "core/yaml/key_table.h"
 #include "core/yaml/yaml.h"
+#include "model/robot/description.h"
 
 namespace footfall::model {
 
@@ -21,6 +22,10 @@ struct Spread {
   enum class Kind : std::uint8_t { none, fixed, normal, uniform };
   Kind kind = Kind::none;
   double a = 0.0, b = 0.0;  // fixed: a; normal: mean 0, standard deviation a; uniform: from a to b
+
+  // The least and the most that can be drawn; 0 if nothing is.
+  double least() const;
+  double most() const;
 };
 
 // A push of an impulse at a time between two, in any horizontal direction.
@@ -33,6 +38,7 @@ struct PushSpread {
 struct Variation {
   Spread velocity;                    // m/s, of the base at the start, x and y each
   Spread joints;                      // rad, each joint's angle at the start, from its posture
+  std::string joints_place;           // where that is written, `w.yaml:3:11`
   Spread rates;                       // rad/s, of the base at the start, about each of its axes
   Spread friction;                    // of the ground, in the place of the world's
   Spread mass;                        // relative change of each link's mass in the control model
@@ -42,6 +48,8 @@ struct Variation {
 
   // The least friction that can be drawn; nullopt: it is not drawn.
   std::optional<double> least_friction() const;
+  // The most command delay that can be added, s; 0: it is not drawn.
+  double most_command_delay() const;
 };
 
 // `variation:` of a world or a scenario.
@@ -52,6 +60,9 @@ extern const core::KeyTable kSpreadKeys, kVariedStartKeys, kVariedModelKeys, kVa
 // takes all away.
 Variation read_variation(const core::YamlNode& node, const Variation& base,
                          core::Diagnostics& diagnostics);
+
+// Which joint could begin beyond its limits, in one line; empty if none.
+std::string start_beyond_limits(const Variation& variation, const RobotDescription& robot);
 
 struct DrawnPush {
   double time = 0.0;       // s
@@ -73,6 +84,10 @@ struct Draw {
   // What was drawn, by name with its unit (`start.velocity_mps`), for summaries and logs.
   std::vector<std::pair<std::string, std::vector<double>>> values;
 };
+
+// Makes the drawn delay the one that acts: with the world's `own` it is of whole steps of the
+// physics.
+void round_command_delay(Draw& drawn, double own, double step);
 
 // Each quantity has a stream of random numbers of its own: to pin one leaves the others as they
 // are. `links`: names of the robot's bodies.

@@ -1,7 +1,8 @@
 // Feedback of internal forces that the loop cannot bear; see parts.h.
 //
-// The measured torque is that of the last command: n periods old, one and what the world's
-// `command_delay` adds. With F = F_ref + K_F (F_ref - F_measured) ([Kim16] eqs. (4)-(5) with E7) a
+// The torque measured at a tick is what acted in the physics step before it. With a delay of d of
+// the S steps of a period it is the command n = ceil((d + 1) / S) = 1 + floor(d / S) periods ago.
+// With F = F_ref + K_F (F_ref - F_measured) ([Kim16] eqs. (4)-(5) with E7) a
 // deviation is multiplied by -K_F every n periods: it dies out exactly if |K_F| < 1, whatever n is.
 // An actuator with a bandwidth of its own would bear more; none is simulated.
 #include <fmt/format.h>
@@ -51,7 +52,9 @@ class FeedbackCheck {
   bool report(const InternalSpec& spec, std::optional<double> feedback, Severity severity,
               const std::string& where) {
     if (!feedback || std::abs(*feedback) < 1.0) return false;
-    const double periods = 1.0 + std::ceil(context_.world.command_delay / b().period() - 1e-9);
+    const int steps = context_.world.steps_per_tick;
+    const auto late_steps = std::lround(context_.world.command_delay * steps / b().period());
+    const double periods = static_cast<double>(1 + late_steps / steps);
     const double late = 1e3 * periods * b().period();
     context_.findings.add(
         severity, spec.mark, "unstable-feedback", where,

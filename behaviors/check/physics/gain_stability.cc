@@ -5,8 +5,11 @@
 // A law without damping (kd 0) lets an error swing for ever, and sampling makes it grow: that is
 // reported where it grows faster than the robot falls by itself, ω = √(g/h).
 //
-// A stable loop falls as well where small errors ask for more than there is. For the CoM's height
-// that is certain without a model: feet push only, so nothing accelerates downwards more than g.
+// A stable loop falls as well where small errors ask for more than there is. For the CoM that is
+// known without a model of the rest: feet push only, so nothing accelerates downwards more than g;
+// and with all of the weight on one of two feet, at the distance d from the CoM along the line of
+// the feet, the CoM at the height h accelerates by g d / h away from it (the ground's force points
+// to the CoM while the angular momentum is kept), and no more.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +57,9 @@ class GainCheck {
     for (const ControlSpec& control : b().controls) {
       for (int k = control.tasks.first; k < control.tasks.end(); ++k) {
         const TaskSpec& task = b().tasks[at(k)];
-        for (int a = task.axes.first; a < task.axes.end(); ++a) judge(task, b().axes[at(a)]);
+        for (int a = task.axes.first; a < task.axes.end(); ++a) {
+          judge(control, task, b().axes[at(a)]);
+        }
       }
     }
     context_.findings.settle(1);
@@ -85,15 +90,14 @@ class GainCheck {
     return damped ? g > 1.0 + kRounding : std::log(std::max(g, 1e-300)) > falling_ * l.period;
   }
 
-  void judge(const TaskSpec& task, const AxisSpec& axis) {
+  void judge(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
     std::vector<RangeEnd> ends;
     const auto gains = gains_of(axis, ends);
     if (!gains) return;
-    const bool damped = (*gains)[2] > 0.0;
-    if (report(task, axis, *gains, damped, Severity::error, {})) return;
-    report_lift(task, axis, *gains);
+    if (report(task, axis, *gains, Severity::error, {})) return;
+    report_lift(control, task, axis, *gains);
     for (const RangeEnd& end : ends) {
-      if (report(task, axis, end.gains, damped, Severity::warning,
+      if (report(task, axis, end.gains, Severity::warning,
                  fmt::format(" at the end of the range of '{}'", end.name))) {
         return;
       }
@@ -101,7 +105,7 @@ class GainCheck {
   }
 
   // Gains in the first tick, nullopt if they depend on what is measured; and with each end of a
-  // range that an edit can reach. An end of 0 switches the gain off, and says nothing of the rest.
+  // range that an edit can reach.
   std::optional<Gains> gains_of(const AxisSpec& axis, std::vector<RangeEnd>& ends) const {
     const std::array<int, 3> slots = {axis.kp, axis.ki, axis.kd};
     Gains gains{};
@@ -138,12 +142,13 @@ class GainCheck {
         for (int i = 0; i < info.size; ++i) values.parameters()[at(info.slot + i)] = end;
         edited.gains[gain] = values.of(expression).value_or(0.0);
       }
-      if (edited.gains[gain] > 0.0) ends.push_back(std::move(edited));
+      ends.push_back(std::move(edited));
     }
   }
 
-  bool report(const TaskSpec& task, const AxisSpec& axis, const Gains& gains, bool damped,
-              Severity severity, const std::string& where) {
+  bool report(const TaskSpec& task, const AxisSpec& axis, const Gains& gains, Severity severity,
+              const std::string& where) {
+    const bool damped = gains[2] > 0.0;
     const bool simulated = grows(loop(task, gains, false), damped);
     const bool held = grows(loop(task, gains, true), damped);
     if (!simulated && !held) return false;
@@ -153,29 +158,60 @@ class GainCheck {
         simulated ? severity : Severity::warning, axis.mark, "unstable-gains",
         axis_text(task, axis),
         fmt::format("task '{}' is unstable in '{}'{}{}: {} {:g} {} is too much for a period of "
-                    "{:.3g} ms{}: an error grows {}; {} {:.4g} {} is the most{}",
+                    "{:.3g} ms{}: an error grows {}{}",
                     b().task_instances[at(task.instance)].name, axis_text(task, axis), where,
                     simulated ? "" : " on a robot, which holds its torque over the whole period",
                     kNames[gain], gains[gain], kUnits[gain], 1e3 * l.period, delay_text(),
-                    growth_text(growth_of(l), l.period), kNames[gain],
-                    most(task, gains, gain, damped, l.exact), kUnits[gain], others(gains, gain)));
+                    growth_text(growth_of(l), l.period), remedy(task, gains, gain, l.exact)));
     return true;
   }
 
-  // The CoM's height, unless its acceleration is bounded.
-  void report_lift(const TaskSpec& task, const AxisSpec& axis, const Gains& gains) {
+  // What the feet can give the CoM along an axis of the world, m/s^2; nullopt if it is not known.
+  std::optional<double> given_by_feet(const ControlSpec& control, std::size_t axis) const {
+    if (axis == 2) return kGravity;
+    if (control.contacts.size() != 2) return std::nullopt;
+    const auto right = context_.model.point_position(control.contacts[0]);
+    const auto left = context_.model.point_position(control.contacts[1]);
+    const auto com = context_.model.com().position;
+    constexpr double kAlong = 0.9;  // cosine of the angle between the axis and the line of the feet
+    const double apart = std::hypot(left[0] - right[0], left[1] - right[1]);
+    const double height = com[2] - std::min(left[2], right[2]);
+    if (height <= 0.0 || std::abs(left[axis] - right[axis]) < kAlong * apart) return std::nullopt;
+    const double distance =
+        std::min(std::abs(com[axis] - right[axis]), std::abs(com[axis] - left[axis]));
+    const bool between = (com[axis] - right[axis]) * (com[axis] - left[axis]) < 0.0;
+    return between ? std::optional(kGravity * distance / height) : std::nullopt;
+  }
+
+  // Position axes of the CoM, unless their acceleration is bounded to what there is.
+  void report_lift(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis,
+                   const Gains& gains) {
     constexpr double kError = 1e-3;  // m
     constexpr double kSpeed = 1e-2;  // m/s
     const tasks::TaskTypeInfo& type = tasks::info(task.type);
-    if (type.subject != tasks::Subject::com || !type.is_length(2) || axis.axis != 2) return;
+    if (type.subject != tasks::Subject::com || !type.is_length(axis.axis)) return;
+    const auto given = given_by_feet(control, at(axis.axis));
     const double wanted = gains[0] * kError + gains[2] * kSpeed;
-    if (axis.acceleration_limit >= 0 || wanted <= kGravity) return;
+    if (!given || std::min(wanted, limit_of(axis)) <= *given) return;
+    const std::string name = b().task_instances[at(task.instance)].name;
+    const bool up = axis.axis == 2;
     context_.findings.add(
         Severity::warning, axis.mark, "lifts-feet", axis_text(task, axis),
-        fmt::format("task '{}' asks for {:.3g} m/s^2 when the CoM is 1 mm too high and 1 cm/s too "
-                    "fast (kp {:g}, kd {:g}): feet cannot pull, so beyond 9.81 m/s^2 they leave "
-                    "the ground; smaller gains, or `acceleration_limit`",
-                    b().task_instances[at(task.instance)].name, wanted, gains[0], gains[2]));
+        fmt::format("task '{}' asks for {:.3g} m/s^2{} when the CoM is 1 mm {} and 1 cm/s too "
+                    "fast (kp {:g}, kd {:g}): feet cannot pull, so beyond {:.3g} m/s^2 {} "
+                    "the ground; smaller gains, or an `acceleration_limit` below that",
+                    name, std::min(wanted, limit_of(axis)),
+                    up ? "" : fmt::format(" in '{}'", axis_text(task, axis)),
+                    up ? "too high" : "away", gains[0], gains[2], *given,
+                    up ? "they leave" : "one of the two leaves"));
+  }
+  // A limit that depends on what is measured is taken to be right.
+  double limit_of(const AxisSpec& axis) const {
+    constexpr double kUnlimited = 1e300;
+    if (axis.acceleration_limit < 0) return kUnlimited;
+    const Dependence needs = dependence_of(b(), axis.acceleration_limit);
+    if (needs.measured || needs.variable || needs.entry) return 0.0;
+    return values_.of(axis.acceleration_limit).value_or(0.0);
   }
 
   std::string axis_text(const TaskSpec& task, const AxisSpec& axis) const {
@@ -203,16 +239,59 @@ class GainCheck {
     if (grows(loop(task, {0.0, 0.0, gains[2]}, exact), true)) return 2;
     return grows(loop(task, {gains[0], 0.0, gains[2]}, exact), damped) ? 0 : 1;
   }
-  // The largest value with which the loop is stable, the others as they are (kp and ki above it 0).
-  double most(const TaskSpec& task, Gains gains, std::size_t gain, bool damped, bool exact) {
-    if (gain != 1) gains[1] = 0.0;
-    if (gain == 2) gains[0] = 0.0;
-    double low = 0.0, high = gains[gain];
-    for (int k = 0; k < 60; ++k) {
-      gains[gain] = 0.5 * (low + high);
-      (grows(loop(task, gains, exact), damped) ? high : low) = gains[gain];
+  // The first value of a gain, on from the one given by a factor, with which the loop is stable, to
+  // 1e-3 of it; the others as they are. nullopt: none is found within nine decades.
+  std::optional<double> stable(const TaskSpec& task, Gains gains, std::size_t gain, double factor,
+                               bool exact) {
+    const auto is_stable = [&](double value) {
+      gains[gain] = value;
+      return !grows(loop(task, gains, exact), gains[2] > 0.0);
+    };
+    const double start = gains[gain];
+    double bad = start, good = start;
+    do {
+      bad = good;
+      good *= factor;
+      if (good < 1e-9 * start || good > 1e9 * start) return std::nullopt;
+    } while (!is_stable(good));
+    for (int k = 0; k < 24; ++k) {
+      const double middle = 0.5 * (good + bad);
+      (is_stable(middle) ? good : bad) = middle;
     }
-    return low;
+    return good;
+  }
+
+  // The most that is stable with the others as they are; if there is none, without the integral,
+  // then alone. An integral is stable as well with more kp: above ki / kd in the limit of T -> 0.
+  std::string remedy(const TaskSpec& task, const Gains& gains, std::size_t gain, bool exact) {
+    constexpr double kDown = 0.8, kUp = 1.1;
+    const auto most_text = [&](const Gains& held) -> std::string {
+      const auto most = stable(task, held, gain, kDown, exact);
+      if (!most) return {};
+      std::string without;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (held[k] != gains[k]) {
+          without += fmt::format("{}{}", without.empty() ? " without " : " and ", kNames[k]);
+        }
+      }
+      return fmt::format("; {} {:.4g} {} is the most{}{}", kNames[gain], *most, kUnits[gain],
+                         others(held, gain), without);
+    };
+    const bool none = gain == 1 && gains[0] == 0.0;  // any integral grows, however slowly
+    std::string text = none ? "" : most_text(gains);
+    if (gain == 1) {
+      if (gains[2] == 0.0) return text;
+      Gains more = gains;
+      more[0] = std::max(gains[0], 1e-2 * gains[1] / gains[2]);
+      const auto least = stable(task, more, 0, kUp, exact);
+      if (!least) return text;
+      return text + fmt::format("{} kp must be above {:.4g} {}{}", text.empty() ? ";" : ", or",
+                                *least, kUnits[0], text.empty() ? others(more, 0) : "");
+    }
+    if (text.empty() && gains[1] != 0.0) text = most_text({gains[0], 0.0, gains[2]});
+    Gains alone{};
+    alone[gain] = gains[gain];
+    return text.empty() ? most_text(alone) : text;
   }
 
   PhysicsContext& context_;

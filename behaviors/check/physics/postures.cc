@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <random>
 
+#include "core/random.h"
+
 namespace footfall::behaviors {
 namespace {
 
@@ -14,10 +16,9 @@ constexpr double kJointSpread = 0.2;  // rad
 constexpr double kTilt = 0.1;         // rad
 constexpr double kYaw = 0.5;          // rad
 
-// Uniform within ±limit, identical with every standard library.
+// Uniform within ±limit.
 double within(double limit, std::mt19937_64& engine) {
-  constexpr double k2To53 = 9007199254740992.0;
-  return limit * (2.0 * static_cast<double>(engine() >> 11U) / k2To53 - 1.0);
+  return limit * (2.0 * core::uniform(engine) - 1.0);
 }
 
 std::array<double, 4> quaternion(double roll, double pitch, double yaw) {

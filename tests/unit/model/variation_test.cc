@@ -104,6 +104,65 @@ TEST(Variation, APushHasItsImpulseAndComesInItsTime) {
   }
 }
 
+// Seed 4 of `sd: 60 %` had a mass of -0.68 times the true one.
+TEST(Variation, ThreeDeviationsLieWithinWhatCanBeDrawn) {
+  EXPECT_NE(problems("control_model: {mass: {sd: 60 %}}").find("1:28: error: three standard devia"),
+            std::string::npos);
+  EXPECT_NE(problems("control_model: {mass: {sd: 31 %}}").find("an sd of at most 0.3"),
+            std::string::npos);
+  EXPECT_EQ(problems("control_model: {mass: {sd: 30 %}}"), "");
+  EXPECT_NE(problems("start: {velocity: {sd: 4 m/s}}").find("beyond -10 and 10"),
+            std::string::npos);
+  const Variation most = read("control_model: {mass: {sd: 30 %}}");
+  for (std::uint64_t seed = 0; seed < 2'000; ++seed) {
+    for (const auto& [link, factor] : draw(most, 6, kLinks, seed).masses) EXPECT_GE(factor, 0.1);
+  }
+}
+
+TEST(Variation, AJointThatCouldBeginBeyondItsLimitsIsNamed) {
+  model::RobotDescription robot;
+  robot.joints.push_back(
+      {.name = "hip", .position_min = -1.0, .position_max = 1.0, .posture = 0.1});
+  robot.joints.push_back(
+      {.name = "knee", .position_min = 0.1, .position_max = 2.0, .posture = 0.4});
+  // Three deviations of 0.1 rad just reach the knee's limit.
+  EXPECT_EQ(model::start_beyond_limits(read("start: {joints: {sd: 0.1}}"), robot), "");
+  EXPECT_EQ(model::start_beyond_limits(read("start: {joints: -0.3}"), robot), "");
+  EXPECT_EQ(model::start_beyond_limits({}, robot), "");
+  EXPECT_EQ(model::start_beyond_limits(read("start: {joints: {sd: 0.2}}"), robot),
+            "w.yaml:1:17: error: joint 'knee' could begin 17.2 deg beyond its limits: it is drawn "
+            "between -34.4 and 34.4 deg from its posture of 22.9 deg, and its limits are 5.73 and "
+            "115 deg");
+  EXPECT_NE(model::start_beyond_limits(read("start: {joints: {range: [0, 1]}}"), robot), "");
+  EXPECT_NE(model::start_beyond_limits(read("start: {joints: -0.31}"), robot), "");
+}
+
+TEST(Variation, TheMostDelayIsWhatChecksCountOn) {
+  EXPECT_EQ(Variation{}.most_command_delay(), 0.0);
+  EXPECT_EQ(read("command_delay: 2 ms").most_command_delay(), 2e-3);
+  EXPECT_EQ(read("command_delay: {range: [0 s, 667 us]}").most_command_delay(), 667e-6);
+  EXPECT_EQ((Spread{Spread::Kind::normal, 0.1, 0.0}.most()), 3.0 * 0.1);
+}
+
+TEST(Variation, TheDelayThatIsToldIsTheOneThatActs) {
+  const double step = 1.0 / 3000.0;
+  const Variation v = read("command_delay: {range: [0 s, 667 us]}");
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    for (const double own : {0.0, 2e-3}) {
+      Draw drawn = draw(v, 0, {}, seed);
+      const auto acts = std::llround((own + *drawn.command_delay) / step);  // as the simulator does
+      model::round_command_delay(drawn, own, step);
+      EXPECT_NEAR(own + *drawn.command_delay, static_cast<double>(acts) * step, 1e-15);
+      EXPECT_EQ(std::llround((own + *drawn.command_delay) / step), acts);
+      EXPECT_EQ(drawn.values,
+                (decltype(drawn.values){{"command_delay_s", {*drawn.command_delay}}}));
+    }
+  }
+  Draw none;
+  model::round_command_delay(none, 0.0, step);
+  EXPECT_FALSE(none.command_delay.has_value());
+}
+
 TEST(Variation, MistakesAreTold) {
   EXPECT_NE(problems("frition: 0.8").find("did you mean 'friction'?"), std::string::npos);
   EXPECT_NE(problems("friction: {sd: 0.1}").find("1:11: error: a friction is no difference"),

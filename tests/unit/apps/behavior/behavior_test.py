@@ -105,6 +105,28 @@ class Check(Case):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.refused(self.footfall("check", self.write("s.yaml", text.format("moon"))), 2, "s.yaml:3:8", "moon")
 
+    def test_gains_that_a_drawn_delay_makes_unstable_are_refused(self):
+        # One period late, x' = -kd x is stable below 1 / T = 1500 1/s.
+        quick = self.write("b.yaml", STAND.replace("priority: 1", "joints: [left_knee], priority: 1").replace("kd: 5", "kd: 2000"))
+        late = self.write("w.yaml", "world: 1\nvariation: {command_delay: 667 us}\n")
+        prompt = self.write("p.yaml", "world: 1\n")
+        scenario = "scenario: 1\nbehavior: b.yaml\nworld: {}\nfor: 10 ms\nexpect: [time >= 0 s]\n"
+        said = "kd 2000 1/s is too much for a period of 0.667 ms and a delay of 0.667 ms"
+        self.refused(self.run_it(quick, "--world", late, "--for", "10ms"), 2, said)
+        drawn = self.write("s.yaml", scenario.format("p.yaml") + "variation: {command_delay: {range: [0 s, 667 us]}}\n")
+        for path in (drawn, self.write("t.yaml", scenario.format("w.yaml"))):
+            self.refused(self.footfall("check", path), 2, said)
+            self.refused(self.run_it(path), 2, said)
+        self.assertEqual(self.footfall("check", self.write("u.yaml", scenario.format("p.yaml"))).returncode, 0)
+        told = json.loads(self.run_it("balance", "--world", "varied", "--for", "10ms", "--json").stdout)["variation"]
+        self.assertIn(round(told["command_delay_s"] * 3000, 6), (0, 1, 2))  # whole steps of the physics
+        off = self.run_it(quick, "--world", late, "--for", "10ms", "--variation", "off")
+        self.assertEqual(off.returncode, 0, off.stderr)
+
+    def test_a_start_beyond_the_limits_of_a_joint_is_refused_with_its_place(self):
+        world = self.write("w.yaml", "world: 1\nvariation: {start: {joints: {sd: 18 deg}}}\n")
+        self.refused(self.run_it("balance", "--world", world), 2, "w.yaml:2:29: error: joint '", "beyond its limits")
+
     def test_a_behavior_on_stdin(self):
         result = subprocess.run([BINARY, "check", "-", "--stdin-name", "mine.yaml"], text=True, timeout=100,
                                 input=CHART.replace("to: b", "to: bb"), capture_output=True)

@@ -35,7 +35,7 @@ class Help(Case):
     def test_signals_of_a_filter_parameters_and_gains(self):
         result = self.footfall("signals", "balance", "gains.single.*.kp")
         self.assertEqual(len(result.stdout.splitlines()), 3)
-        self.assertRegex(result.stdout, r"gains\.single\.height\.kp +1/s\^2 +gain 270, range 0 to 800, live")
+        self.assertRegex(result.stdout, r"gains\.single\.height\.kp +1/s\^2 +gain 270, range 5 to 800, live")
         result = self.footfall("signals", "balance", "lift_time")
         self.assertRegex(result.stdout, r"\$lift_time +s +parameter 0\.145, range 0\.11 to 0\.16, live")
         result = self.footfall("signals", "balance", "lift_tiem")

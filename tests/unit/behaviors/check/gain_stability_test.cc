@@ -128,6 +128,22 @@ TEST(SampledLoop, GrowthIsThatOfTheLoopItselfWithIntegralsAndDelays) {
   }
 }
 
+// The checks judge the most delay that a seed can draw, and none below it.
+TEST(SampledLoop, MoreDelayNeverMakesALoopStable) {
+  for (const double kp : {0.0, 50.0, 1e3, 3e4, 1e6}) {
+    for (const double kd : {5.0, 100.0, 800.0, 2000.0, 2900.0}) {
+      for (const double ki : {0.0, 0.5 * kp * kd}) {
+        bool stable = true;
+        for (int late = 0; late < 14; ++late) {
+          const bool now = growth(simulated(kp, ki, kd, 2, late * kPeriod / 2.0)) <= 1.0 + 1e-9;
+          EXPECT_TRUE(stable || !now) << kp << ' ' << ki << ' ' << kd << ' ' << late;
+          stable = now;
+        }
+      }
+    }
+  }
+}
+
 std::string with_gains(const std::string& gains, const std::string& task = "height") {
   const std::string axes = "axes: [z], reference: entry, ";
   std::string tasks = "      height: {type: com_position, " + axes +
@@ -178,6 +194,24 @@ TEST(PhysicsGains, AnIntegralBeyondTheProductOfTheOthersIsRefused) {
 }
 
 // It swings for ever, and grows more slowly than the robot falls by itself.
+// 2 kd T + kp T^2 / 2 < 4 with the two steps of the default world.
+TEST(PhysicsGains, TheMostIsThatWithTheOthersAsTheyAre) {
+  const double most = 2.0 / kPeriod - 0.25 * 1e6 * kPeriod;
+  EXPECT_THAT(physics(with_gains("{kp: 1e6, kd: 5000}")),
+              HasSubstr(fmt::format("; kd {:.4g} 1/s is the most with kp 1e+06\n", most)));
+  EXPECT_NEAR(most, 2833.3, 0.1);
+  EXPECT_GT(growth(simulated(1e6, 0.0, 1.001 * most)), 1.0);
+  EXPECT_LT(growth(simulated(1e6, 0.0, 0.999 * most)), 1.0);
+  // With kp 1e7 no kd is: kd T > kp T^2 / 4 = 1.11 contradicts kd T < 2 - kp T^2 / 4 = 0.89.
+  EXPECT_THAT(physics(with_gains("{kp: 1e7, kd: 5000}")),
+              HasSubstr("; kd 3000 1/s is the most without kp\n"));
+  EXPECT_THAT(physics(with_gains("{kp: 100, ki: 600, kd: 5}")),
+              HasSubstr(", or kp must be above 1"));
+  EXPECT_THAT(physics(with_gains("{ki: 20, kd: 10}")),
+              testing::AllOf(HasSubstr("; kp must be above 1.99 1/s^2 with ki 20 and kd 10\n"),
+                             Not(HasSubstr("is the most"))));
+}
+
 TEST(PhysicsGains, ALawWithoutDampingIsNotRefusedForThat) {
   EXPECT_EQ(physics(with_gains("{kp: 400}")), "");
   EXPECT_EQ(physics(with_gains("{kp: 100, ki: 20}")), "");
@@ -192,12 +226,40 @@ TEST(PhysicsGains, AHeightThatAsksForMoreThanGravityAtSmallErrorsIsWarnedOf) {
                          "warning: task 'height' asks for 11 m/s^2 when the CoM is 1 mm too high"));
   EXPECT_EQ(physics(with_gains("{kp: 100, kd: 970}")), "");
   EXPECT_EQ(physics(with_gains("{kp: 2000, kd: 900}, acceleration_limit: 5 m/s^2")), "");
+  EXPECT_THAT(physics(with_gains("{kp: 2000, kd: 900}, acceleration_limit: 10 m/s^2")),
+              HasSubstr("warning: task 'height' asks for 10 m/s^2 when the CoM"));
+  EXPECT_EQ(
+      physics(with_gains("{kp: 2000, kd: 900}, acceleration_limit: \"= 20 m/s^2*(1 - t/1 s)\"")),
+      "");
   EXPECT_EQ(physics(with_gains("{kd: 2000}", "rest")), "");
+}
+
+// Hume's feet stand 0.28 m apart below a CoM at about 0.91 m: 9.81 * 0.14 / 0.91 = 1.5 m/s^2.
+TEST(PhysicsGains, ACoMThatAsksForMoreThanTheFeetGiveAlongTheirLineIsWarnedOf) {
+  const auto with = [](const std::string& gains, const std::string& axis = "y") {
+    return standing("[right_foot, left_foot]",
+                    height() + attitude("[pitch, roll]") +
+                        "      shift: {type: com_position, axes: [" + axis +
+                        "], priority: 2, reference: entry, gains: " + gains + "}\n" + rest());
+  };
+  const std::string said = physics(with("{kp: 100, kd: 300}"));
+  EXPECT_THAT(said,
+              HasSubstr("warning: task 'shift' asks for 3.1 m/s^2 in 'y' when the CoM is 1 mm "
+                        "away and 1 cm/s too fast (kp 100, kd 300): feet cannot pull, so "
+                        "beyond 1."));
+  const std::size_t beyond = said.find("beyond ");
+  ASSERT_NE(beyond, std::string::npos);
+  EXPECT_NEAR(std::stod(said.substr(beyond + 7)), 1.5, 0.05);
+  EXPECT_THAT(physics(with("{kp: 100, kd: 130}")), Not(HasSubstr("asks for")));
+  EXPECT_THAT(physics(with("{kp: 100, kd: 300}, acceleration_limit: 1 m/s^2")),
+              Not(HasSubstr("asks for")));
+  EXPECT_THAT(physics(with("{kp: 100, kd: 300}, acceleration_limit: 2 m/s^2")),
+              HasSubstr("asks for 2 m/s^2 in 'y'"));
 }
 
 std::string tabled(const std::string& gains, const std::string& ranges) {
   return "behavior: 1\nrobot: hume\ngains:\n  ranges: " + ranges + "\n  s: {height: " + gains +
-         ", attitude: {kp: 1}, rest: {kd: 1}}\nstacks:\n  s:\n    contacts: [right_foot, "
+         ", attitude: {kp: 10}, rest: {kd: 1}}\nstacks:\n  s:\n    contacts: [right_foot, "
          "left_foot]\n    gains: s\n    tasks:\n      height: {type: com_position, axes: [z], "
          "reference: entry}\n      attitude: {type: body_orientation, reference: 0}\n      rest: "
          "{type: joint_damping, priority: 2}\nmachine:\n  stack: s\n  states: {stand: {doc: "
@@ -206,8 +268,9 @@ std::string tabled(const std::string& gains, const std::string& ranges) {
 
 TEST(PhysicsGains, EachEndOfALiveGainsRangeIsJudged) {
   EXPECT_EQ(
-      physics(tabled("{kp: 270, ki: 20, kd: 10}", "{kp: [0, 800], ki: [0, 200], kd: [0, 120]}")),
+      physics(tabled("{kp: 270, ki: 20, kd: 10}", "{kp: [5, 800], ki: [0, 200], kd: [0, 120]}")),
       "");
+  EXPECT_EQ(physics(tabled("{kp: 270, kd: 10}", "{kp: [0, 800], kd: [0, 120]}")), "");
   EXPECT_THAT(physics(tabled("{kp: 270, kd: 10}", "{kd: [0, 5000]}")),
               HasSubstr("warning: task 'height' is unstable in 'z' at the end of the range of "
                         "'gains.s.height.kd': kd 5000 1/s"));
@@ -215,6 +278,8 @@ TEST(PhysicsGains, EachEndOfALiveGainsRangeIsJudged) {
               HasSubstr("at the end of the range of 'gains.s.height.ki': ki 4000 1/s^3"));
   EXPECT_THAT(physics(tabled("{kp: 270, ki: 20, kd: 10}", "{kp: [1, 800]}")),
               HasSubstr("at the end of the range of 'gains.s.height.kp': ki 20 1/s^3"));
+  EXPECT_THAT(physics(tabled("{kp: 270, ki: 20, kd: 10}", "{kp: [0, 800]}")),
+              HasSubstr("kp must be above 1.99 1/s^2 with ki 20 and kd 10"));
 }
 
 TEST(PhysicsGains, AGainFromAParameterIsJudgedAtTheEndsOfItsRange) {
@@ -265,19 +330,44 @@ TEST(PhysicsFeedback, TheEndsOfALiveRangeAreWarnedAbout) {
             "");
 }
 
+std::string judged_in(const std::string& text, const behaviors::PhysicsWorld& world) {
+  core::Diagnostics diagnostics, findings;
+  const auto behavior =
+      behaviors::load_behavior_text(text, "b.yaml", options_for_tests(), diagnostics);
+  for (int f = 0; f < diagnostics.file_count(); ++f) findings.add_file(diagnostics.file(f));
+  behaviors::check_physics(*behavior, findings, world);
+  return findings.to_string();
+}
+
+// Commands in a line of physics steps, as the simulator keeps them: how old is the one that acted
+// in the last step before a tick?
+TEST(PhysicsFeedback, TheAgeOfTheMeasuredTorqueIsThatOfItsCommand) {
+  for (const int steps : {1, 2, 3}) {
+    for (int late = 0; late < 8; ++late) {
+      std::deque<int> line(static_cast<std::size_t>(late), 0);
+      int acted = 0;
+      for (int tick = 0; tick < 20; ++tick) {
+        for (int s = 0; s < steps; ++s) {
+          line.push_back(tick);
+          acted = line.front();
+          line.pop_front();
+        }
+      }
+      const int periods = 20 - acted;
+      EXPECT_THAT(
+          judged_in(fed_back("1.5"),
+                    {.steps_per_tick = steps, .command_delay = late * kPeriod / steps}),
+          HasSubstr(fmt::format("that of a command {:.3g} ms before", 1e3 * periods * kPeriod)))
+          << steps << ' ' << late;
+    }
+  }
+}
+
 // The world may be late, or step the physics differently.
 TEST(PhysicsGains, TheWorldsDelayCounts) {
-  const auto judge = [](const std::string& text, const behaviors::PhysicsWorld& world) {
-    core::Diagnostics diagnostics, findings;
-    const auto behavior =
-        behaviors::load_behavior_text(text, "b.yaml", options_for_tests(), diagnostics);
-    for (int f = 0; f < diagnostics.file_count(); ++f) findings.add_file(diagnostics.file(f));
-    behaviors::check_physics(*behavior, findings, world);
-    return findings.to_string();
-  };
   const std::string text = with_gains("{kp: 4000, kd: 10}");
-  EXPECT_EQ(judge(text, {}), "");
-  EXPECT_THAT(judge(text, {.command_delay = 4e-3}),
+  EXPECT_EQ(judged_in(text, {}), "");
+  EXPECT_THAT(judged_in(text, {.command_delay = 4e-3}),
               HasSubstr("period of 0.667 ms and a delay of 4 ms: an error grows by e in "));
 }
 

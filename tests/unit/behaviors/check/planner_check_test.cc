@@ -127,20 +127,24 @@ TEST(PhysicsPlanner, ALiveKappaIsReadWhenThePlannerIsAskedAndWarnedAboutAtItsEnd
   EXPECT_EQ(behaviors::spec_in_force(b->planners[0], values).kappa[1], 0.2);
 }
 
-// The law itself, stepping on the spot: the pendulum from switch to switch, mirrored after each.
-double steady_width(const behaviors::FootPlannerSpec& spec, double height, double step) {
+// The law itself, stepping on the spot, mirrored after each switch: the CoM coasts with both feet
+// down, then follows the pendulum about the foot that is new. Nothing is assumed to be steady.
+double steady_width(const behaviors::FootPlannerSpec& spec, double height, double coast,
+                    double single) {
   const double w = std::sqrt(spec.gravity / height);
-  double y = 0.1, v = 0.0, goal = 0.0,
-         width = 0.0;  // from the stance foot; the other is on the left
+  const double C = std::cosh(w * single), S = std::sinh(w * single);
+  double y = 0.1, v = 0.0, goal = 0.0;  // from the stance foot; the other is on the left
+  double width = 0.0;
   for (int k = 0; k < 300; ++k) {
+    y += v * coast;
     behaviors::FootPlannerInput in;
     in.com = {0.0, y};
     in.com_vel = {0.0, v};
     in.com_height = height;
     in.goal = {0.0, goal};
-    in.switch_in = step;
-    const double next_y = std::cosh(w * step) * y + std::sinh(w * step) / w * v;
-    const double next_v = w * std::sinh(w * step) * y + std::cosh(w * step) * v;
+    in.switch_in = single;
+    const double next_y = C * y + S / w * v;
+    const double next_v = w * S * y + C * v;
     width = behaviors::plan_foot(spec, in).target[1];
     y = width - next_y;  // from the new foot, mirrored
     v = -next_v;
@@ -150,29 +154,37 @@ double steady_width(const behaviors::FootPlannerSpec& spec, double height, doubl
 }
 
 TEST(PhysicsPlanner, SteadyStepsWiderThanTheReachAreWarnedAbout) {
-  const auto text = [](double offset) {
-    std::string file = walking("0.4");
-    const std::string old = "reversal: 185 ms";
-    return file.replace(
-        file.find(old), old.size(),
-        fmt::format("{}, width_offset: {} m, reach: {{x: 0.4 m, y: [0.1 m, 0.6 m]}}", old, offset));
+  const auto text = [](double kappa, double offset, bool both) {
+    std::string file = walking(fmt::format("{}", kappa));
+    const std::string old = "reversal: 185 ms", ready = "ready: {after";
+    file.replace(file.find(old), old.size(),
+                 fmt::format("{}, width_offset: {:.17g} m, reach: {{x: 0.4 m, y: [0.1 m, 0.6 m]}}",
+                             old, offset));
+    return both ? file.replace(file.find(ready), ready.size(),
+                               "ready: {contacts: [right_foot, left_foot], after")
+                : file;
   };
-  behaviors::FootPlannerSpec spec;
-  spec.kappa = {0.4, 0.4};
-  spec.reversal = {0.185, 0.185};
-  spec.width_offset = 0.01;
-  const double limit = 0.01 * 0.6 / steady_width(spec, 0.935, 0.335);
-  EXPECT_NEAR(limit, 0.023, 0.001);
-  EXPECT_EQ(physics(text(0.99 * limit)), "");
-  EXPECT_THAT(physics(text(1.01 * limit)),
-              HasSubstr(fmt::format("beyond its reach.y of 0.6 m: every step is cut; here "
-                                    "width_offset must be below {:.2g} m",
-                                    limit)));
-  // With both feet down the CoM only coasts: 40 ms of the step no longer count.
-  std::string both = text(1.01 * limit);
-  const std::string ready = "ready: {after";
-  both.replace(both.find(ready), ready.size(), "ready: {contacts: [right_foot, left_foot], after");
-  EXPECT_EQ(physics(both).find("every step is cut"), std::string::npos);
+  for (const double kappa : {0.0, 0.25, 0.4}) {
+    for (const bool both : {false, true}) {
+      behaviors::FootPlannerSpec spec;
+      spec.kappa = {kappa, kappa};
+      spec.reversal = {0.185, 0.185};
+      spec.width_offset = 0.01;
+      // Widths are proportional to the offset.
+      const double coast = both ? 0.04 : 0.0;
+      const double limit = 0.01 * 0.6 / steady_width(spec, 0.935, coast, 0.335 - coast);
+      EXPECT_EQ(physics(text(kappa, 0.999 * limit, both)).find("every step is cut"),
+                std::string::npos)
+          << kappa << both;
+      const std::string said = physics(text(kappa, 1.001 * limit, both));
+      EXPECT_THAT(said, HasSubstr("beyond its reach.y of 0.6 m: every step is cut")) << both;
+      const std::string before = "width_offset must be below ";
+      const std::size_t found = said.find(before);
+      ASSERT_NE(found, std::string::npos);
+      // Three digits are printed: half of the last one, 5e-5 m.
+      EXPECT_NEAR(std::stod(said.substr(found + before.size())), limit, 5e-5);
+    }
+  }
 }
 
 }  // namespace

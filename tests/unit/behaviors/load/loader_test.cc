@@ -249,7 +249,7 @@ TEST(Loader, AnOverriddenGainMustStayInsideItsRange) {
   EXPECT_FALSE(behaviors::load_behavior(balance_path(), options, diagnostics));
   const std::string text = diagnostics.to_string();
   EXPECT_NE(
-      text.find("--set gains.single.swing.kp:1:12: error: '3000' is outside gains.ranges, 0 to "
+      text.find("--set gains.single.swing.kp:1:12: error: '3000' is outside gains.ranges, 5 to "
                 "800\n"),
       std::string::npos)
       << text;
