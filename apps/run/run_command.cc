@@ -145,7 +145,7 @@ int run_behavior(RunOptions options) {
         "--film: error: a film is made from the log with the report: leave out --no-log and "
         "--no-report");
   }
-  const sim::WorldDescription declared = load_world(options.world);
+  const sim::WorldDescription declared = declared_world(options, load_world(options.world));
   const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
@@ -153,6 +153,7 @@ int run_behavior(RunOptions options) {
     throw InputError(behavior->path +
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
+  check_links_of(declared, behavior->robot);
   model::Draw drawn;
   const sim::WorldDescription world = draw_world(options, *behavior, declared, drawn);
   Backend backend = make_backend(options, *behavior, world);

@@ -17,6 +17,7 @@
 #include "lab/judge/scenario_run.h"
 #include "lab/scenario/edits.h"
 #include "lab/scenario/loader.h"
+#include "lab/scenario/variation.h"
 
 namespace footfall::apps {
 namespace {
@@ -47,10 +48,9 @@ CheckedScenario load_checked(const RunOptions& options) {
   }
   sim::WorldDescription world =
       load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
-  if (scenario.variation) {
-    core::Diagnostics ignored;  // the loader has told
-    world.variation = model::read_variation(*scenario.variation, world.variation, ignored);
-  }
+  world.variation = lab::variation_over(scenario, world.variation);
+  world = declared_world(options, std::move(world));
+  check_links_of(world, scenario.behavior->robot);
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics, physics_world(world));

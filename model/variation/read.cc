@@ -1,8 +1,10 @@
 // `variation:` of a file: keys and reading; see variation.h.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/value_reader.h"
 #include "model/variation/variation.h"
 
@@ -103,7 +105,7 @@ class Reader {
   void control_model(const YamlNode& node, Variation& out) {
     if (is_off(node)) {
       out.mass = {};
-      out.com.clear();
+      clear_com(out);
       return;
     }
     if (!expect_map(node, "{mass: ..., com: {LINK: ...}}", diagnostics_)) return;
@@ -112,10 +114,11 @@ class Reader {
     const YamlNode* const com = node.find("com");
     if (com == nullptr) return;
     if (is_off(*com)) {
-      out.com.clear();
+      clear_com(out);
     } else if (expect_map(*com, "a map by link", diagnostics_)) {
       for (const YamlEntry& entry : com->entries) {
         out.com[entry.key] = read(entry.value, kLength, -1.0, 1.0);
+        out.links.push_back(named_link(entry, diagnostics_));
       }
     }
   }
@@ -130,6 +133,9 @@ class Reader {
     }
     if (const YamlNode* between = require_key(node, "between", diagnostics_)) {
       out.push.between = read_range(*between, kTime, diagnostics_).value_or(out.push.between);
+      if (out.push.between[0] < 0.0) {
+        diagnostics_.error(between->mark, "out-of-range", "expected times from 0 s on");
+      }
     }
     if (const YamlNode* time = node.find("for")) {
       out.push.duration = read_bounded(*time, kTime, 1e-3, 10.0, diagnostics_).value_or(0.1);
@@ -137,10 +143,33 @@ class Reader {
   }
 
  private:
+  static void clear_com(Variation& out) {
+    out.com.clear();
+    out.links.clear();
+  }
+
   Diagnostics& diagnostics_;
 };
 
 }  // namespace
+
+NamedLink named_link(const YamlEntry& entry, const Diagnostics& diagnostics) {
+  const int file = entry.key_mark.file;
+  const bool known = file >= 0 && file < diagnostics.file_count();
+  return {entry.key, known ? diagnostics.file(file) : "", entry.key_mark};
+}
+
+void check_links(const std::vector<NamedLink>& links, const std::vector<std::string>& bodies,
+                 Diagnostics& diagnostics) {
+  for (const NamedLink& link : links) {
+    if (std::ranges::find(bodies, link.name) != bodies.end()) continue;
+    Mark mark = link.mark;
+    mark.file = diagnostics.add_file(link.file);
+    diagnostics.error(mark, "unknown-name",
+                      fmt::format("the robot has no body '{}'{}", link.name,
+                                  did_you_mean_or_list(link.name, bodies)));
+  }
+}
 
 Variation read_variation(const YamlNode& node, const Variation& base, Diagnostics& diagnostics) {
   if (Reader::is_off(node)) return {};
