@@ -23,6 +23,12 @@ const YamlNode* own_push(const ScenarioDescription& scenario) {
   return scenario.variation ? scenario.variation->find("push") : nullptr;
 }
 
+// A value, a distribution and a push go over the world's as a whole.
+bool replaces_all(const YamlNode& node) {
+  return !node.is_map() || node.find("sd") != nullptr || node.find("range") != nullptr ||
+         node.find("impulse") != nullptr;
+}
+
 }  // namespace
 
 void load_variation(ScenarioContext& context, const YamlNode& node) {
@@ -55,14 +61,11 @@ bool draws_itself(const ScenarioDescription& scenario, const std::vector<std::st
   if (!scenario.variation) return false;
   const YamlNode* node = &*scenario.variation;
   for (const std::string& key : path) {
-    // A value, a distribution and a push replace the world's as a whole.
-    const bool whole = !node->is_map() || node->find("sd") != nullptr ||
-                       node->find("range") != nullptr || node->find("impulse") != nullptr;
-    if (whole) return true;
+    if (replaces_all(*node)) return true;
     node = node->find(key);
     if (node == nullptr) return false;
   }
-  return true;
+  return replaces_all(*node);
 }
 
 }  // namespace footfall::lab

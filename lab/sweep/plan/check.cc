@@ -170,18 +170,19 @@ void refuse_shadowed(const SweepDescription& sweep, const ScenarioDescription& s
                      Diagnostics& diagnostics) {
   for (const SweepAxis& axis : sweep.axes) {
     if (!is_world_axis(axis.name)) continue;
-    std::vector<std::string> path = core::split_dots(axis.name.substr(sizeof("world.") - 1));
     const bool ground = axis.name == "world.ground.friction";
-    if (!ground && path.front() != "variation") continue;
+    const std::string own =
+        ground ? "variation.friction" : axis.name.substr(std::string_view("world.").size());
+    std::vector<std::string> path = core::split_dots(own);
+    if (path.front() != "variation") continue;
     path.erase(path.begin());
     if (!draws_itself(scenario, path)) continue;
     // With `friction: off` the ground's own is what a run has.
     if (ground && variation_over(scenario, {}).friction.kind == model::Spread::Kind::none) continue;
-    diagnostics.error(
-        axis.mark, "unknown-setting",
-        fmt::format("'{}' has no effect: the scenario's `variation:` goes over it; vary "
-                    "'variation.{}'",
-                    axis.name, fmt::join(path, ".")));
+    diagnostics.error(axis.mark, "unknown-setting",
+                      fmt::format("'{}' has no effect: the scenario's `variation:` goes over it; "
+                                  "vary '{}'",
+                                  axis.name, own));
   }
 }
 

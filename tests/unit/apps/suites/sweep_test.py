@@ -178,8 +178,13 @@ class Input(SweepCase):
             self.sweep("--vary", name + "=[0.4,0.9]", what=str(path), expect=2)
             self.assertIn(f"'{name}' has no effect: the scenario's `variation:` goes over it; vary 'variation.friction'",
                           self.stderr)
+        self.sweep("--vary", "variation.friction=[0.4,0.9]", "--vary", "world.variation.friction=[0.4]", what=str(path), expect=2)
+        self.sweep("--vary", "world.variation.start.joints=[0.01]", what=str(path))
+        self.out = self.folder / "own"
+        self.environment["FAKE_LOG"] = str(self.folder / "own_starts")
         self.sweep("--vary", "variation.friction=[0.4,0.9]", what=str(path))
-        texts = [pathlib.Path(line.split()[1]).read_text() for line in self.starts()]
+        starts = (self.folder / "own_starts").read_text().splitlines()
+        texts = [pathlib.Path(line.split()[1]).read_text() for line in starts]
         self.assertEqual([f"friction: {x}" in text for x, text in zip((0.4, 0.9), sorted(texts))], [True, True], texts)
 
     def test_the_friction_of_the_ground_is_that_of_the_runs(self):
