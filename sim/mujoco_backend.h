@@ -21,7 +21,7 @@ namespace footfall::sim {
 struct ActivePush {
   int body = 0;
   std::array<double, 3> force{};  // N, world
-  int steps_left = 0;             // physics steps
+  double steps_left = 0.0;        // physics steps; the last one may be a part
 };
 inline constexpr std::size_t kMaxPushes = 32;  // maximum number of simultaneous pushes
 

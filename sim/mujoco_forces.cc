@@ -14,12 +14,15 @@ void MujocoBackend::apply_forces() noexcept {
   for (const HeldBody& h : held_) {
     if (h.body != 0) std::fill_n(data_->xfrc_applied + 6 * h.body, 6, 0.0);
   }
-  // Pushes on one body add up.
+  // Pushes on one body add up. The last step of one that lasts no whole number of steps has a part
+  // of the force, so that the impulse is force times duration.
   for (ActivePush& p : pushes_) {
     if (p.body == 0) continue;
     double* force = data_->xfrc_applied + 6 * p.body;
-    for (std::size_t k = 0; k < 3 && p.steps_left > 0; ++k) force[k] += p.force[k];
-    if (p.steps_left-- <= 0) p = {};
+    const double part = std::clamp(p.steps_left, 0.0, 1.0);
+    for (std::size_t k = 0; k < 3 && part > 0.0; ++k) force[k] += part * p.force[k];
+    p.steps_left -= 1.0;
+    if (p.steps_left <= -1.0) p = {};  // one step later: its force was cleared above
   }
   for (const HeldBody& h : held_) {
     if (h.body != 0) apply_hold(h);
@@ -76,7 +79,9 @@ bool MujocoBackend::push(int body, double force, double direction, double durati
       std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
   free_slot->body = body;
   free_slot->force = {force * std::cos(yaw + direction), force * std::sin(yaw + direction), 0.0};
-  free_slot->steps_left = static_cast<int>(std::llround(duration / model_->opt.timestep));
+  const double steps = duration / model_->opt.timestep;
+  const double whole = std::round(steps);  // of times that are such up to round-off
+  free_slot->steps_left = std::abs(steps - whole) < 1e-9 * std::max(whole, 1.0) ? whole : steps;
   return true;
 }
 

@@ -17,6 +17,7 @@
 #include "core/text/whole_file.h"
 #include "lab/scenario/edits.h"
 #include "lab/scenario/loader.h"
+#include "lab/scenario/variation.h"
 #include "lab/suite/discovery.h"
 #include "model/check/check.h"
 #include "model/control_model.h"
@@ -77,7 +78,8 @@ void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
   check_loaded(behaviors::load_behavior(path, load_options(), diagnostics).get(), diagnostics);
 }
 
-// Checks the world that a scenario names: a file beside it, or one found by name.
+// Checks the world that a scenario names: a file beside it, or one found by name; as the scenario's
+// `variation:` makes it.
 behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
                                        core::Diagnostics& diagnostics) {
   if (scenario.world.empty()) return {};
@@ -87,9 +89,12 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
   const std::string path = beside.empty() ? sim::find_world_file(scenario.world, folders) : beside;
   if (!path.empty()) {
     sim::WorldDescription world = sim::load_world(path, diagnostics);
-    if (scenario.variation) {
-      core::Diagnostics ignored;  // reported by the loader
-      world.variation = model::read_variation(*scenario.variation, world.variation, ignored);
+    if (diagnostics.has_errors()) return {};
+    world.variation = lab::variation_over(scenario, world.variation);
+    lab::warn_late_push(scenario, world.variation, diagnostics);
+    const behaviors::Behavior* const behavior = scenario.behavior.get();
+    if (behavior != nullptr && behavior->has_robot) {
+      check_links_of(world, behavior->robot, diagnostics);
     }
     return physics_world(world);
   }

@@ -145,8 +145,7 @@ int run_behavior(RunOptions options) {
         "--film: error: a film is made from the log with the report: leave out --no-log and "
         "--no-report");
   }
-  sim::WorldDescription declared = load_world(options.world);
-  if (options.variation == "off") declared.variation = {};
+  const sim::WorldDescription declared = declared_world(options, load_world(options.world));
   const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
@@ -154,6 +153,7 @@ int run_behavior(RunOptions options) {
     throw InputError(behavior->path +
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
+  check_links_of(declared, behavior->robot);
   model::Draw drawn;
   const sim::WorldDescription world = draw_world(options, *behavior, declared, drawn);
   Backend backend = make_backend(options, *behavior, world);
@@ -168,11 +168,11 @@ int run_behavior(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware),
                          drawn.values};
-  const auto link = attach_link(options, loop, physics, spec);
+  const auto link = attach_link(options, loop, world, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
-  LiveFiles live = watch_files(options, loop, *backend.hardware, world, physics, spec);
+  LiveFiles live = watch_files(options, loop, *backend.hardware, world, spec);
   spec.reloads = live.reloads.get();
 
   const lab::RunResult result = lab::run(loop, spec);

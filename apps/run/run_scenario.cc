@@ -17,6 +17,7 @@
 #include "lab/judge/scenario_run.h"
 #include "lab/scenario/edits.h"
 #include "lab/scenario/loader.h"
+#include "lab/scenario/variation.h"
 
 namespace footfall::apps {
 namespace {
@@ -47,11 +48,9 @@ CheckedScenario load_checked(const RunOptions& options) {
   }
   sim::WorldDescription world =
       load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
-  if (scenario.variation) {
-    core::Diagnostics ignored;  // the loader has told
-    world.variation = model::read_variation(*scenario.variation, world.variation, ignored);
-  }
-  if (options.variation == "off") world.variation = {};
+  world.variation = lab::variation_over(scenario, world.variation);
+  world = declared_world(options, std::move(world));
+  check_links_of(world, scenario.behavior->robot);
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics, physics_world(world));
@@ -125,7 +124,7 @@ int run_scenario_file(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(behavior, sensors),
                          drawn.values};
-  const auto link = attach_link(options, loop, physics_world(checked.world), spec);
+  const auto link = attach_link(options, loop, world, spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();

@@ -52,9 +52,21 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
   return world;
 }
 
+sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescription world) {
+  if (options.variation == "off") world.variation = {};
+  return world;
+}
+
+void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot) {
+  core::Diagnostics diagnostics;
+  check_links_of(world, robot, diagnostics);
+  print_diagnostics(diagnostics);
+  if (diagnostics.has_errors()) throw InputError("");
+}
+
 sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
                                  const sim::WorldDescription& world, model::Draw& drawn) {
-  if (options.variation == "off" || options.backend != "mujoco") return world;
+  if (options.backend != "mujoco") return world;
   const std::string beyond = model::start_beyond_limits(world.variation, behavior.robot);
   if (!beyond.empty()) throw InputError(beyond);
   const std::vector<std::string> links = world.variation.mass.kind == model::Spread::Kind::none

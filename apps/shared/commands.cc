@@ -17,6 +17,7 @@
 #include "core/process/machine_error.h"
 #include "core/text/printable.h"
 #include "core/text/search_folders.h"
+#include "model/mjcf.h"
 #include "sim/world/description.h"
 
 namespace footfall::apps {
@@ -146,6 +147,16 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world) {
   return {world.variation.least_friction().value_or(world.friction), world.physics.steps_per_tick,
           world.actuators.command_delay + world.variation.most_command_delay()};
+}
+
+void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot,
+                    core::Diagnostics& diagnostics) {
+  if (world.links.empty() && world.variation.links.empty()) return;  // spares reading the model
+  try {
+    sim::check_links(world, model::body_names(robot.model_path), diagnostics);
+  } catch (const std::runtime_error& error) {
+    diagnostics.error({diagnostics.add_file(robot.path), 0, 0}, "model", error.what());
+  }
 }
 
 std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,

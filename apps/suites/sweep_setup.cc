@@ -9,6 +9,7 @@
 #include "apps/shared/commands.h"
 #include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
+#include "lab/scenario/variation.h"
 #include "lab/sweep/plan/check.h"
 #include "lab/sweep/plan/derived_files.h"
 #include "sim/world/description.h"
@@ -17,9 +18,14 @@ namespace footfall::apps {
 namespace {
 
 behaviors::PhysicsWorld load_and_check_world(const std::string& path,
+                                             const lab::ScenarioDescription& scenario,
+                                             const behaviors::Behavior* behavior,
                                              core::Diagnostics& diagnostics) {
-  const sim::WorldDescription world = sim::load_world(path, diagnostics);
+  sim::WorldDescription world = sim::load_world(path, diagnostics);
+  world.variation = lab::variation_over(scenario, world.variation);
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+  const bool complete = !diagnostics.has_errors() && behavior != nullptr && behavior->has_robot;
+  if (complete) check_links_of(world, behavior->robot, diagnostics);
   return physics_world(world);
 }
 
@@ -42,6 +48,14 @@ void name_default_world(lab::SweepDescription& sweep, core::Diagnostics& diagnos
   if (!scenario.world.empty()) sweep.worlds = {find_world(scenario.path, scenario.world)};
 }
 
+// A scenario's own world is loaded by its runs: whether they can is told before the first of them.
+void check_scenario_world(const lab::SweepDescription& sweep, core::Diagnostics& diagnostics) {
+  if (diagnostics.has_errors() || sweep.scenario.empty() || !sweep.worlds.empty()) return;
+  const auto scenario = lab::load_scenario(sweep.scenario, {search_path()}, diagnostics);
+  const std::string path = find_world(scenario.path, scenario.world);
+  if (!path.empty()) load_and_check_world(path, scenario, scenario.behavior.get(), diagnostics);
+}
+
 }  // namespace
 
 PreparedSweep prepare_sweep(lab::SweepDescription sweep, core::Diagnostics& diagnostics) {
@@ -58,6 +72,7 @@ PreparedSweep prepare_sweep(lab::SweepDescription sweep, core::Diagnostics& diag
   }
   const lab::SweepCheckOptions options = {search_path(), prepared.worlds, load_and_check_world};
   prepared.inputs = lab::check_sweep(sweep, options, diagnostics);
+  check_scenario_world(sweep, diagnostics);
   prepared.sweep = std::move(sweep);
   return prepared;
 }

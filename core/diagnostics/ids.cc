@@ -52,6 +52,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"incomplete-gains", kWarning, "kp without kd, or ki without kp"},
     {"key-kind", kError, "a list or map in place of a key"},
     {"kind", kError, "a file of the wrong kind"},
+    {"late-push", kWarning, "a drawn push that no run of the scenario can reach"},
     {"list-comma", kWarning, "a comma in a list that may be a decimal one"},
     {"live-range", kError, "a parameter with `live: true` and no `range`"},
     {"live-variable", kError, "an action sets a live parameter"},

@@ -105,7 +105,10 @@ YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
     return {};
   }
   std::erase_if(root.entries, [](const YamlEntry& entry) { return entry.key == "base"; });
-  if (chain.layers != nullptr) chain.layers->files.push_back(root);
+  if (chain.layers != nullptr) {
+    chain.layers->files.push_back(root);
+    if (chain.layers->prepare != nullptr) chain.layers->prepare(base, root);
+  }
   merge_over(base, std::move(root), chain.history, chain.diagnostics);
   return base;
 }

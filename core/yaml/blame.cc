@@ -41,6 +41,7 @@ YamlNode merge_layers(const YamlLayers& layers, EditCounter& counter) {
     counter.layer = static_cast<int>(k);
     YamlNode own = layers.files[k];
     std::erase_if(own.entries, [](const YamlEntry& entry) { return entry.key == "base"; });
+    if (layers.prepare != nullptr) layers.prepare(tree, own);
     merge_maps(tree, std::move(own), MergeRecorder{nullptr, &counter, {}}, ignored);
   }
   return tree;

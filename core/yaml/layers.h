@@ -10,9 +10,13 @@
 
 namespace footfall::core {
 
+// Adapts a base to the file that is merged over it, for keys that merge in their own way.
+using PrepareMerge = void (*)(YamlNode& base, const YamlNode& own);
+
 // The files as written, without their `base:` key, the innermost base first.
 struct YamlLayers {
   std::vector<YamlNode> files;
+  PrepareMerge prepare = nullptr;
 };
 
 // Merges `own` over `base`: maps key by key, everything else as a whole, `NAME: off` removes,
@@ -37,10 +41,10 @@ Diagnostics blame_edits(const YamlLayers& layers, const Diagnostics& before,
 // Loads a file and its bases by `load(root, diagnostics)`, with errors where they were typed.
 // `lists`: with the warnings about lost items.
 template <typename Load>
-auto load_over_base(const std::string& path, bool lists, Diagnostics& diagnostics,
-                    const Load& load) {
+auto load_over_base(const std::string& path, bool lists, Diagnostics& diagnostics, const Load& load,
+                    PrepareMerge prepare = nullptr) {
   YamlHistory history;
-  YamlLayers layers;
+  YamlLayers layers{{}, prepare};
   YamlNode root = load_yaml_with_base(path, diagnostics, &history, {}, &layers);
   if (lists) warn_lost_items(history, diagnostics);
   Diagnostics found = diagnostics;

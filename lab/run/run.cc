@@ -1,6 +1,8 @@
 // What a run attaches to the executive; see run.h.
 #include "lab/run/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -173,6 +175,19 @@ RunEnd end_of(const engine::ControlLoop& loop) {
   }
 }
 
+// Scheduled events that are left when a run is over.
+void list_missed(const RunSpec& spec, RunResult& result) {
+  for (const ScheduledEvent& event : spec.events) {
+    if (!event.fire) continue;
+    if (!event.optional) {
+      result.missed.push_back(event.label);
+    } else if (!result.cause) {
+      result.not_reached.push_back(event.at_time ? fmt::format("push at {:.3g} s", *event.at_time)
+                                                 : event.label);
+    }
+  }
+}
+
 }  // namespace
 
 bool has_goal(const behaviors::Behavior& behavior) {
@@ -244,9 +259,7 @@ RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
   if (spec.allocations) result.allocations = spec.allocations();
   result.reloads = executive.exchanges();
   if (spec.log != nullptr) result.log_lost = spec.log->lost();
-  for (const ScheduledEvent& event : spec.events) {
-    if (event.fire && !event.optional) result.missed.push_back(event.label);
-  }
+  list_missed(spec, result);
   recorder.log().event("end", run_end_name(result.end), result.cause ? result.cause->text : "");
   return result;
 }

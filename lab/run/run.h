@@ -92,6 +92,8 @@ struct RunResult {
   int reloads = 0;                  // done, those taken back counted twice
   std::int64_t log_lost = 0;        // ticks that are not in the log
   std::vector<std::string> missed;  // scheduled events whose moment never came
+  // Of optional ones, unless the run fell or was stopped by a fault: `push at 6.74 s`.
+  std::vector<std::string> not_reached;
 };
 
 // Runs from start to end. Throws what engine::Executive::run() throws, and std::runtime_error if

@@ -147,7 +147,7 @@ Json torque_loops_json(const RunIdentity& id) {
 // Lists of more than this many values are told by their largest.
 constexpr std::size_t kMostListed = 3;
 
-std::string variation_text(const RunIdentity& id) {
+std::string variation_text(const RunIdentity& id, const RunResult& result) {
   std::string text;
   for (const auto& [name, values] : id.variation) {
     text += text.empty() ? "" : ", ";
@@ -162,6 +162,8 @@ std::string variation_text(const RunIdentity& id) {
       text += fmt::format("{} {:.3g} to {:.3g}", name, least, most);
     }
   }
+  for (const std::string& event : result.not_reached)
+    text += fmt::format("; {}: not reached", event);
   return fmt::format("  drawn        {}\n", text);
 }
 
@@ -273,6 +275,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["marked_steps"] = result.marked_steps;
   out["unused_torque_loops"] = torque_loops_json(id);
   out["missed"] = result.missed;
+  out["not_reached"] = result.not_reached;
   out["variation"] = variation_json(id);
   out["log_lost_ticks"] = result.log_lost;
   if (!physics_only) {
@@ -341,7 +344,7 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
                       result.tick_time.percentile(0.5) * 1e-3,
                       result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);
   if (!id.unused_torque_loops.empty()) text += torque_loops_text(id);
-  if (!id.variation.empty()) text += variation_text(id);
+  if (!id.variation.empty()) text += variation_text(id, result);
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
   return text;
 }

@@ -40,6 +40,7 @@ std::optional<double> read_duration(ScenarioContext& context, const core::YamlNo
 void load_script(ScenarioContext& context, const core::YamlNode& node);        // script.cc
 void load_expectations(ScenarioContext& context, const core::YamlNode& node);  // expect.cc
 void load_golden(ScenarioContext& context, const core::YamlNode& node);        // golden.cc
+void load_variation(ScenarioContext& context, const core::YamlNode& node);     // variation.cc
 // Warns about a condition on every tick that a state fails in which its signal has no value, at
 // `mark` (no_value.cc).
 void warn_no_value(ScenarioContext& context, const Expectation& expectation, core::Mark mark);

@@ -106,6 +106,7 @@ struct ScenarioDescription {
   std::optional<core::YamlNode> variation;
   std::vector<std::uint64_t> seeds{1};
   double duration = 0.0;  // s
+  core::Mark duration_mark;
   std::vector<ScriptEntry> script;
   std::vector<behaviors::ScriptFile> scripts;
   std::vector<Expectation> expectations;

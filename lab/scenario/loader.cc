@@ -196,6 +196,7 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
   if (const YamlNode* node = root.find("seeds")) read_seeds(context, *node);
   if (const YamlNode* node = core::require_key(root, "for", diagnostics)) {
     scenario.duration = read_duration(context, *node).value_or(0.0);
+    scenario.duration_mark = node->mark;
   }
 }
 
@@ -279,10 +280,7 @@ ScenarioDescription load_tree(const YamlNode& root, const std::string& path,
   read_head(context, root);
   load_named_behavior(context, root, options);
   load_bodies(context);
-  if (const YamlNode* variation = root.find("variation")) {
-    model::read_variation(*variation, {}, diagnostics);
-    scenario.variation = *variation;
-  }
+  if (const YamlNode* variation = root.find("variation")) load_variation(context, *variation);
   if (const YamlNode* scripts = root.find("scripts")) load_functions(context, *scripts);
   if (const YamlNode* script = root.find("script")) load_script(context, *script);
   if (const YamlNode* expect = root.find("expect")) load_expectations(context, *expect);
@@ -295,10 +293,12 @@ ScenarioDescription load_tree(const YamlNode& root, const std::string& path,
 
 ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,
                                   core::Diagnostics& diagnostics) {
-  return core::load_over_base(path, true, diagnostics,
-                              [&](const YamlNode& root, core::Diagnostics& problems) {
-                                return load_tree(root, path, options, problems);
-                              });
+  return core::load_over_base(
+      path, true, diagnostics,
+      [&](const YamlNode& root, core::Diagnostics& problems) {
+        return load_tree(root, path, options, problems);
+      },
+      model::prepare_variation);
 }
 
 }  // namespace footfall::lab

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/diagnostics/did_you_mean.h"
 #include "core/yaml/value_reader.h"
 #include "model/variation/variation.h"
 
@@ -124,7 +125,7 @@ class Reader {
   void control_model(const YamlNode& node, Variation& out) {
     if (is_off(node)) {
       out.mass = {};
-      out.com.clear();
+      clear_com(out);
       return;
     }
     if (!expect_map(node, "{mass: ..., com: {LINK: ...}}", diagnostics_)) return;
@@ -133,10 +134,11 @@ class Reader {
     const YamlNode* const com = node.find("com");
     if (com == nullptr) return;
     if (is_off(*com)) {
-      out.com.clear();
+      clear_com(out);
     } else if (expect_map(*com, "a map by link", diagnostics_)) {
       for (const YamlEntry& entry : com->entries) {
         out.com[entry.key] = read(entry.value, kLength, -1.0, 1.0);
+        out.links.push_back(named_link(entry, diagnostics_));
       }
     }
   }
@@ -151,6 +153,9 @@ class Reader {
     }
     if (const YamlNode* between = require_key(node, "between", diagnostics_)) {
       out.push.between = read_range(*between, kTime, diagnostics_).value_or(out.push.between);
+      if (out.push.between[0] < 0.0) {
+        diagnostics_.error(between->mark, "out-of-range", "expected times from 0 s on");
+      }
     }
     if (const YamlNode* time = node.find("for")) {
       out.push.duration = read_bounded(*time, kTime, 1e-3, 10.0, diagnostics_).value_or(0.1);
@@ -158,10 +163,33 @@ class Reader {
   }
 
  private:
+  static void clear_com(Variation& out) {
+    out.com.clear();
+    out.links.clear();
+  }
+
   Diagnostics& diagnostics_;
 };
 
 }  // namespace
+
+NamedLink named_link(const YamlEntry& entry, const Diagnostics& diagnostics) {
+  const int file = entry.key_mark.file;
+  const bool known = file >= 0 && file < diagnostics.file_count();
+  return {entry.key, known ? diagnostics.file(file) : "", entry.key_mark};
+}
+
+void check_links(const std::vector<NamedLink>& links, const std::vector<std::string>& bodies,
+                 Diagnostics& diagnostics) {
+  for (const NamedLink& link : links) {
+    if (std::ranges::find(bodies, link.name) != bodies.end()) continue;
+    Mark mark = link.mark;
+    mark.file = diagnostics.add_file(link.file);
+    diagnostics.error(mark, "unknown-name",
+                      fmt::format("the robot has no body '{}'{}", link.name,
+                                  did_you_mean_or_list(link.name, bodies)));
+  }
+}
 
 Variation read_variation(const YamlNode& node, const Variation& base, Diagnostics& diagnostics) {
   if (Reader::is_off(node)) return {};
@@ -177,7 +205,7 @@ Variation read_variation(const YamlNode& node, const Variation& base, Diagnostic
     out.friction = {};
   }
   if (const YamlNode* model = node.find("control_model")) reader.control_model(*model, out);
-  reader.spread(node, "command_delay", kTime, 0.0, 1.0, out.command_delay);
+  reader.spread(node, "command_delay", kTime, 0.0, 0.02, out.command_delay);
   if (out.command_delay.kind == Spread::Kind::normal) {
     diagnostics.error(node.find("command_delay")->mark, "out-of-range",
                       "a delay cannot be negative: expected {range: [0 s, 667 us]}");

@@ -35,6 +35,17 @@ struct PushSpread {
   std::array<double, 2> between{};  // s
 };
 
+// A link that a file names, and where.
+struct NamedLink {
+  std::string name;
+  std::string file;
+  core::Mark mark;  // in that file
+};
+NamedLink named_link(const core::YamlEntry& entry, const core::Diagnostics& diagnostics);
+// Reports links that the robot does not have; `bodies`: names of its model's.
+void check_links(const std::vector<NamedLink>& links, const std::vector<std::string>& bodies,
+                 core::Diagnostics& diagnostics);
+
 struct Variation {
   Spread velocity;                    // m/s, of the base at the start, x and y each
   Spread joints;                      // rad, each joint's angle at the start, from its posture
@@ -43,6 +54,7 @@ struct Variation {
   Spread friction;                    // of the ground, in the place of the world's
   Spread mass;                        // relative change of each link's mass in the control model
   std::map<std::string, Spread> com;  // m, x and y of a link's CoM in the control model
+  std::vector<NamedLink> links;       // those of `com`, as named
   Spread command_delay;               // s, added to the world's
   PushSpread push;
 
@@ -63,6 +75,11 @@ Variation read_variation(const core::YamlNode& node, const Variation& base,
 
 // Which joint could begin beyond its limits, in one line; empty if none.
 std::string start_beyond_limits(const Variation& variation, const RobotDescription& robot);
+
+// Before the merge of a world or scenario over its base (core::YamlLayers): `off` stays as a value,
+// since what it takes away may come from elsewhere, such as a scenario's world; one kind of
+// distribution replaces the other; a `ground: {friction}` replaces the base's draw of it.
+void prepare_variation(core::YamlNode& base, const core::YamlNode& own);
 
 struct DrawnPush {
   double time = 0.0;       // s

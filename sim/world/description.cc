@@ -36,6 +36,7 @@ class WorldLoader {
     core::check_keys(root, kWorldKeys, diagnostics_);
     read_head(root);
     if (const YamlNode* node = root.find("ground")) read_ground(*node);
+    refuse_two_frictions(root);
     if (const YamlNode* node = root.find("surface")) read_surface(*node);
     if (const YamlNode* node = root.find("actuators")) read_actuators(*node);
     if (const YamlNode* node = root.find("sensors")) read_sensors(*node);
@@ -85,6 +86,18 @@ class WorldLoader {
       core::check_keys(piece, kTerrainKeys, diagnostics_);
       if (const YamlNode* box = core::require_key(piece, "box", diagnostics_)) read_box(*box);
     }
+  }
+
+  // Of two files the one on top decides (model::prepare_variation); in one file nobody could tell.
+  void refuse_two_frictions(const YamlNode& root) {
+    const YamlNode* const ground = root.find("ground");
+    const YamlNode* const value = ground == nullptr ? nullptr : ground->find("friction");
+    if (value == nullptr || world_.variation.friction.kind == model::Spread::Kind::none) return;
+    const YamlNode& drawn = *root.find("variation")->find("friction");
+    if (drawn.mark.file != value->mark.file) return;
+    diagnostics_.error(drawn.mark, "misplaced-key",
+                       "'variation: {friction}' beside 'ground: {friction}': the draw would take "
+                       "the place of the value; only one is allowed");
   }
 
   void read_box(const YamlNode& node) {
@@ -200,6 +213,7 @@ class WorldLoader {
     for (const YamlEntry& entry : com->entries) {
       const auto shift = core::read_vector3(entry.value, core::kLength, diagnostics_);
       if (shift) world_.control_model.com_shift[entry.key] = *shift;
+      world_.links.push_back(model::named_link(entry, diagnostics_));
     }
   }
 
@@ -294,10 +308,12 @@ class WorldLoader {
 }  // namespace
 
 WorldDescription load_world(const std::string& path, Diagnostics& diagnostics) {
-  return core::load_over_base(path, false, diagnostics,
-                              [&](const YamlNode& root, Diagnostics& problems) {
-                                return WorldLoader(path, problems).load(root);
-                              });
+  return core::load_over_base(
+      path, false, diagnostics,
+      [&](const YamlNode& root, Diagnostics& problems) {
+        return WorldLoader(path, problems).load(root);
+      },
+      model::prepare_variation);
 }
 
 void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
@@ -315,6 +331,12 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
   for (const ConstraintName& constraint : world.constraints) {
     refuse(constraint.mark, fmt::format("the external aid '{}'", constraint.name));
   }
+}
+
+void check_links(const WorldDescription& world, const std::vector<std::string>& bodies,
+                 Diagnostics& diagnostics) {
+  model::check_links(world.links, bodies, diagnostics);
+  model::check_links(world.variation.links, bodies, diagnostics);
 }
 
 WorldDescription with_draw(WorldDescription world, const model::Draw& drawn) {

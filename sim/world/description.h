@@ -93,6 +93,7 @@ struct WorldDescription {
   ActuatorSettings actuators;
   SensorSettings sensors;
   model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
+  std::vector<model::NamedLink> links;  // of its `com`
   std::vector<ConstraintName> constraints;
   double planner_latency = 2e-3;  // s, between planner request and plan, in lock-step
   model::Variation variation;     // what a seed draws
@@ -109,6 +110,10 @@ WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);
 // Reports everything that a world asks for and this simulator does not support (id "unsupported"),
 // so that nothing in a file is ignored silently.
 void check_supported(const WorldDescription& world, core::Diagnostics& diagnostics);
+
+// Reports links named by the world that a robot does not have; `bodies`: names of its model's.
+void check_links(const WorldDescription& world, const std::vector<std::string>& bodies,
+                 core::Diagnostics& diagnostics);
 
 // Finds a world by name: NAME itself if it is a file, else DIR/sim/worlds/NAME.yaml for each folder
 // of `search` in turn; empty if not found.

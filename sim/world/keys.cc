@@ -31,7 +31,9 @@ constexpr KeySpec kWorldRows[] = {
 };
 
 constexpr KeySpec kGroundRows[] = {
-    key("friction", quantity(kNone), "coefficient of sliding friction").otherwise("0.9"),
+    key("friction", quantity(kNone),
+        "coefficient of sliding friction; instead of one that the base draws")
+        .otherwise("0.9"),
     key("terrain", list(map_of(kTerrainKeys)), "pieces on the flat ground"),
 };
 

@@ -10,7 +10,9 @@
 
 #include "behaviors/loader.h"
 #include "core/process/temporary_folder.h"
+#include "core/text/dotted_name.h"
 #include "lab/scenario/loader.h"
+#include "lab/scenario/variation.h"
 #include "lab/sweep/plan/derived_files.h"
 
 namespace footfall::lab {
@@ -58,6 +60,7 @@ void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagn
   std::string model;
   std::unique_ptr<behaviors::Behavior> behavior;
   std::vector<std::string> behavior_files;
+  ScenarioDescription scenario;  // without one its `variation` is empty
   if (sweep.scenario.empty()) {
     behaviors::LoadOptions load;
     load.search = options.search;
@@ -70,7 +73,7 @@ void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagn
     if (behavior != nullptr) model = behavior->robot.model_path;
     for (int k = 0; k < found.file_count(); ++k) behavior_files.push_back(found.file(k));
   } else {
-    ScenarioDescription scenario = load_scenario(sweep.scenario, {options.search, {}}, found);
+    scenario = load_scenario(sweep.scenario, {options.search, {}}, found);
     if (sweep.seeds.empty()) sweep.seeds = scenario.seeds;
     if (sweep.duration.empty()) sweep.duration_s = scenario.duration;
     behavior = std::move(scenario.behavior);
@@ -83,7 +86,8 @@ void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagn
   if (!model.empty()) files.push_back(model);
   for (std::size_t w = 0; w < options.worlds.size(); ++w) {
     Diagnostics world;
-    const behaviors::PhysicsWorld physics = options.check_world(options.worlds[w], world);
+    const behaviors::PhysicsWorld physics =
+        options.check_world(options.worlds[w], scenario, behavior.get(), world);
     take_errors(world, diagnostics);
     list_files(world, files);
     const bool good = behavior != nullptr && behavior->has_robot && !diagnostics.has_errors();
@@ -139,7 +143,7 @@ class Blame {
     std::optional<core::Mark> place;
     for (std::size_t a = 0; a < sweep_.axes.size() && !place; ++a) {
       const std::string& name = sweep_.axes[a].name;
-      if (is_world_axis(name) != world || is_script_axis(name) != script) continue;
+      if (is_world_axis(name) != world || is_scenario_axis(name) != script) continue;
       place = mark(a);
     }
     std::string with;
@@ -161,6 +165,27 @@ class Blame {
   Diagnostics& diagnostics_;
 };
 
+// Values of the world's draws do nothing where the scenario draws the same over them.
+void refuse_shadowed(const SweepDescription& sweep, const ScenarioDescription& scenario,
+                     Diagnostics& diagnostics) {
+  for (const SweepAxis& axis : sweep.axes) {
+    if (!is_world_axis(axis.name)) continue;
+    const bool ground = axis.name == "world.ground.friction";
+    const std::string own =
+        ground ? "variation.friction" : axis.name.substr(std::string_view("world.").size());
+    std::vector<std::string> path = core::split_dots(own);
+    if (path.front() != "variation") continue;
+    path.erase(path.begin());
+    if (!draws_itself(scenario, path)) continue;
+    // With `friction: off` the ground's own is what a run has.
+    if (ground && variation_over(scenario, {}).friction.kind == model::Spread::Kind::none) continue;
+    diagnostics.error(axis.mark, "unknown-setting",
+                      fmt::format("'{}' has no effect: the scenario's `variation:` goes over it; "
+                                  "vary '{}'",
+                                  axis.name, own));
+  }
+}
+
 void try_run(const SweepDescription& sweep, const SweepRun& run, SweepFiles& files,
              const SweepCheckOptions& options, Diagnostics& diagnostics) {
   SweepTarget target;
@@ -177,19 +202,23 @@ void try_run(const SweepDescription& sweep, const SweepRun& run, SweepFiles& fil
   }
   Blame blame(sweep, run, target, diagnostics);
   Diagnostics found;
+  ScenarioDescription scenario;
+  std::unique_ptr<behaviors::Behavior> behavior;
   if (target.scenario) {
-    load_scenario(target.path, {options.search, target.set}, found);
+    scenario = load_scenario(target.path, {options.search, target.set}, found);
+    behavior = std::move(scenario.behavior);
   } else {
     behaviors::LoadOptions load;
     load.search = options.search;
     load.robot = sweep.robot;
     load.set = target.set;
-    behaviors::load_behavior(target.path, load, found);
+    behavior = behaviors::load_behavior(target.path, load, found);
   }
   blame.take(found);
   if (target.world.empty()) return;
+  refuse_shadowed(sweep, scenario, diagnostics);
   Diagnostics world;
-  options.check_world(target.world, world);
+  options.check_world(target.world, scenario, behavior.get(), world);
   blame.take(world);
 }
 

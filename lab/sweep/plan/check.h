@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "behaviors/check/physics/check.h"
+#include "lab/scenario/description.h"
 #include "lab/sweep/plan/sweep.h"
 
 namespace footfall::lab {
@@ -13,9 +14,12 @@ namespace footfall::lab {
 struct SweepCheckOptions {
   std::vector<std::string> search;  // folders with robots/ and behaviors/library/
   std::vector<std::string> worlds;  // path of each of the sweep's worlds
-  // Loads a world, reports its errors and says what the physics checks take from it; supplied by
-  // the caller, because the loader is in sim.
-  std::function<behaviors::PhysicsWorld(const std::string& path, core::Diagnostics&)> check_world;
+  // Loads a world as it is for a scenario (an empty one: none) and for a behavior (may be null),
+  // reports its errors and says what the physics checks take from it; supplied by the caller,
+  // because the loader is in sim.
+  std::function<behaviors::PhysicsWorld(const std::string& path, const ScenarioDescription&,
+                                        const behaviors::Behavior*, core::Diagnostics&)>
+      check_world;
 };
 
 // Reports problems at the sweep value that causes them. Individually listed values are all tried,

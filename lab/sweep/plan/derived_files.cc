@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::YamlNode;
 
-constexpr std::string_view kScript = "script.", kWorld = "world.";
+constexpr std::string_view kScript = "script.", kWorld = "world.", kVariation = "variation.";
 
 YamlNode parsed(const std::string& text) {
   core::Diagnostics ignored;  // the file was loaded before, or written by us
@@ -78,14 +78,18 @@ std::string absolute(const std::string& path) {
 
 bool is_script_axis(const std::string& name) { return name.starts_with(kScript); }
 bool is_world_axis(const std::string& name) { return name.starts_with(kWorld); }
+bool is_variation_axis(const std::string& name) { return name.starts_with(kVariation); }
+bool is_scenario_axis(const std::string& name) {
+  return is_script_axis(name) || is_variation_axis(name);
+}
 
 SweepFiles::SweepFiles(const SweepDescription& sweep, std::string folder,
                        std::vector<std::string> worlds)
     : sweep_(sweep), folder_(std::move(folder)), worlds_(std::move(worlds)) {
   any_fault_ =
       std::ranges::any_of(sweep.faults, [](const SweepFault& f) { return !f.fault.empty(); });
-  any_script_ =
-      std::ranges::any_of(sweep.axes, [](const SweepAxis& a) { return is_script_axis(a.name); });
+  any_of_scenario_ =
+      std::ranges::any_of(sweep.axes, [](const SweepAxis& a) { return is_scenario_axis(a.name); });
   if (sweep.scenario.empty()) return;
   core::Diagnostics diagnostics;
   scenario_ = core::load_yaml_with_base(sweep.scenario, diagnostics);
@@ -94,15 +98,15 @@ SweepFiles::SweepFiles(const SweepDescription& sweep, std::string folder,
 
 SweepTarget SweepFiles::target(const SweepRun& run) {
   SweepTarget target;
-  target.scenario = !sweep_.scenario.empty() || any_fault_ || any_script_;
+  target.scenario = !sweep_.scenario.empty() || any_fault_ || any_of_scenario_;
   if (!worlds_.empty()) target.world = derived_world(run, worlds_[run.world]);
   for (auto& [name, text] : settings_of(sweep_, run)) {
-    if (!is_script_axis(name) && !is_world_axis(name)) target.set.emplace_back(name, text);
+    if (!is_scenario_axis(name) && !is_world_axis(name)) target.set.emplace_back(name, text);
   }
   target.path = sweep_.behavior;
   if (!target.scenario) return target;
   target.path = sweep_.scenario;
-  const bool as_it_is = !sweep_.scenario.empty() && !any_fault_ && !any_script_ &&
+  const bool as_it_is = !sweep_.scenario.empty() && !any_fault_ && !any_of_scenario_ &&
                         worlds_.empty() && sweep_.duration.empty() &&
                         scenario_.find("golden") == nullptr;
   if (!as_it_is) target.path = derived_scenario(run, target);
@@ -128,6 +132,7 @@ std::string SweepFiles::derived_scenario(const SweepRun& run, const SweepTarget&
   for (const auto& [name, text] : settings_of(sweep_, run)) {
     try {
       if (is_script_axis(name)) put_in_script(script, name, text);
+      if (is_variation_axis(name)) put_at(root, core::split_dots("scenario." + name), text);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(name + ": " + error.what());
     }

@@ -39,12 +39,15 @@ class SweepFiles {
   std::vector<std::string> worlds_;
   core::YamlNode scenario_;  // merged with its bases
   std::set<std::string> written_;
-  bool any_fault_ = false, any_script_ = false;
+  bool any_fault_ = false, any_of_scenario_ = false;
 };
 
 // Whether an axis name refers to the scenario's script.
 bool is_script_axis(const std::string& name);
 bool is_world_axis(const std::string& name);
+// `variation.KEY`: of the scenario, over its world's.
+bool is_variation_axis(const std::string& name);
+bool is_scenario_axis(const std::string& name);  // one of its script or its variation
 
 // The complete command line of a run.
 std::vector<std::string> command_of(const std::string& program, const SweepDescription& sweep,

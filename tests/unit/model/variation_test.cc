@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+
+#include "core/yaml/layers.h"
 
 namespace footfall::tests {
 namespace {
@@ -172,6 +175,75 @@ TEST(Variation, MistakesAreTold) {
   EXPECT_NE(problems("start: {velocity: {}}").find("expected 'sd' or 'range'"), std::string::npos);
   EXPECT_NE(problems("command_delay: {sd: 1 ms}").find("cannot be negative"), std::string::npos);
   EXPECT_NE(problems("push: {impulse: 1 N s}").find("between"), std::string::npos);
+  EXPECT_NE(problems("push: {impulse: 1 N s, between: [-5 s, -3 s]}").find("times from 0 s on"),
+            std::string::npos);
+}
+
+// `own` merged over `base`, both whole files.
+core::YamlNode merged(const std::string& base, const std::string& own) {
+  core::Diagnostics diagnostics;
+  core::YamlNode tree = core::load_yaml_text(base, "base.yaml", diagnostics);
+  core::YamlNode top = core::load_yaml_text(own, "own.yaml", diagnostics);
+  model::prepare_variation(tree, top);
+  core::merge_over(tree, std::move(top), nullptr, diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "");
+  return tree;
+}
+
+Variation read_merged(const std::string& base, const std::string& own, const Variation& world) {
+  core::Diagnostics diagnostics;
+  const core::YamlNode tree = merged(base, own);
+  const Variation out = model::read_variation(*tree.find("variation"), world, diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "");
+  return out;
+}
+
+TEST(Variation, OffOverABaseTakesAwayWhatTheWorldDrawsToo) {
+  const Variation world = read(kAll);
+  const std::string base = "variation: {friction: 0.5, start: {joints: 0.01}}";
+  EXPECT_TRUE(draw(read_merged(base, "variation: off", world), 6, kLinks, 3).values.empty());
+  const Variation off =
+      read_merged(base, "variation: {friction: off, start: {joints: off}}", world);
+  EXPECT_FALSE(draw(off, 6, kLinks, 3).friction.has_value());
+  EXPECT_TRUE(draw(off, 6, kLinks, 3).joints.empty());
+  EXPECT_EQ(draw(off, 6, kLinks, 3).rates, draw(world, 6, kLinks, 3).rates);
+}
+
+TEST(Variation, OneDrawMayBeSetAgainOverOff) {
+  const Variation v =
+      read_merged("variation: off", "variation: {start: {joints: 0.01}}", read(kAll));
+  const Draw drawn = draw(v, 2, kLinks, 3);
+  EXPECT_EQ(drawn.joints, (std::vector<double>{0.01, 0.01}));
+  EXPECT_EQ(drawn.values.size(), 1u);
+}
+
+TEST(Variation, OneKindOfDistributionReplacesTheOther) {
+  const std::string base =
+      "variation: {start: {joints: {sd: 0.3 deg}}, friction: {range: [0.6, 1]}}";
+  const Variation v =
+      read_merged(base, "variation: {start: {joints: {range: [-1 deg, 1 deg]}}}", {});
+  EXPECT_EQ(v.joints.kind, Spread::Kind::uniform);
+  EXPECT_DOUBLE_EQ(v.joints.b, std::numbers::pi / 180.0);
+  EXPECT_EQ(v.friction.kind, Spread::Kind::uniform);
+}
+
+TEST(Variation, AFrictionOfTheGroundReplacesTheDrawOfTheBase) {
+  const std::string base = "variation: {start: {joints: 0.01}, friction: {range: [0.6, 1]}}";
+  const Variation v = read_merged(base, "ground: {friction: 0.2}", {});
+  EXPECT_EQ(v.friction.kind, Spread::Kind::none);
+  EXPECT_EQ(v.joints.kind, Spread::Kind::fixed);
+}
+
+TEST(Variation, LinksThatTheRobotLacksAreToldAtTheirPlace) {
+  core::Diagnostics reading, found;
+  const Variation v = model::read_variation(
+      core::load_yaml_text("control_model: {com: {torsoo: {sd: 5 mm}, thigh: 1 mm, world: 1 mm}}",
+                           "w.yaml", reading),
+      {}, reading);
+  model::check_links(v.links, kLinks, found);
+  EXPECT_EQ(found.to_string(),
+            "w.yaml:1:23: error: the robot has no body 'torsoo' (did you mean 'torso'?)\n"
+            "w.yaml:1:56: error: the robot has no body 'world' (there are torso, thigh, shank)\n");
 }
 
 }  // namespace

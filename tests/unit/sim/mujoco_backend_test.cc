@@ -221,6 +221,20 @@ TEST_F(Mujoco, APushChangesTheMomentumByForceTimesTimeAndFollowsTheHeading) {
   }
 }
 
+// Less than a physics step of 1/3000 s; one and a half; 30 and a bit.
+TEST_F(Mujoco, APushOfNoWholeNumberOfPhysicsStepsKeepsItsImpulse) {
+  for (const double duration : {1e-6, 5e-4, 0.0101}) {
+    auto backend = started();
+    backend.start();
+    lift(backend);
+    const Vector3 before = momentum(backend);
+    ASSERT_TRUE(backend.push(backend.find_body("torso"), 1.0 / duration, 0.0, duration));
+    for (int k = 0; k < 30; ++k) backend.write({});
+    mj_forward(backend.model(), backend.data());
+    EXPECT_NEAR(momentum(backend)[0] - before[0], 1.0, 2e-3) << duration;
+  }
+}
+
 TEST_F(Mujoco, PushesThatOverlapOnABodyAddUp) {
   auto backend = started();
   backend.start();

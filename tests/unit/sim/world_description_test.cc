@@ -179,5 +179,22 @@ TEST_F(WorldDescriptionTest, AWorldIsFoundByFileOrName) {
   EXPECT_EQ(find_world_file("mars", {folder_.string()}), "");
 }
 
+TEST_F(WorldDescriptionTest, TheFrictionOnTopWinsAndTwoInOneFileAreRefused) {
+  std::ofstream(folder_ / "drawn.yaml") << "world: 1\nvariation: {friction: {range: [0.7, 1]}}\n";
+  const WorldDescription given = load("world: 1\nbase: drawn.yaml\nground: {friction: 0.2}\n");
+  EXPECT_EQ(problems(), "");
+  EXPECT_EQ(given.friction, 0.2);
+  EXPECT_EQ(given.variation.least_friction(), std::nullopt);
+  std::ofstream(folder_ / "given.yaml") << "world: 1\nground: {friction: 0.2}\n";
+  const WorldDescription drawn =
+      load("world: 1\nbase: given.yaml\nvariation: {friction: {range: [0.7, 1]}}\n");
+  EXPECT_EQ(problems(), "");
+  EXPECT_EQ(drawn.variation.least_friction(), 0.7);
+  const WorldDescription off =
+      load("world: 1\nbase: drawn.yaml\nground: {friction: 0.2}\nvariation: off\n");
+  EXPECT_EQ(problems(), "");
+  EXPECT_EQ(off.friction, 0.2);
+}
+
 }  // namespace
 }  // namespace footfall::sim

@@ -13,6 +13,21 @@ KEYS = """behavior robot world backend seed end steps time_s fell error foot_pla
 max_torque_step_Nm peak_torque_Nm goal_error_m path_length_m internal_force faults fault_ticks variation format tick_us
 allocations real_time_factor log""".split()
 
+# At 98 N on each foot 32 N need a friction of 0.33.
+STANDS_APART = """behavior: 1
+robot: hume
+machine:
+  contacts: [right_foot, left_foot]
+  tasks:
+    height: {type: com_position, axes: [z], priority: 1, reference: entry, gains: {kp: 270, kd: 10}}
+    attitude: {type: body_orientation, priority: 1, reference: 0, gains: {kp: 200, kd: 15}}
+    rest: {type: joint_damping, priority: 2, gains: {kd: 2}}
+  internal: {s: {between: [right_foot, left_foot], reference: 32 N}}
+  states:
+    stand: {after: 100 ms, to: end}
+    end: {type: final}
+"""
+
 
 class BadInput(Case):
     def test_unknown_robot(self):
@@ -25,25 +40,51 @@ class BadInput(Case):
     def test_missing_file(self):
         self.refused(self.run_it("no/such.yaml"), 2, "no/such.yaml")
 
-    # At 98 N on each foot 32 N need a friction of 0.33; the default world has 0.9, slippery 0.3.
+    # The default world has 0.7 at least, slippery 0.3.
     def test_the_friction_of_the_world_is_that_of_the_check(self):
-        path = self.write("b.yaml", """behavior: 1
-robot: hume
-machine:
-  contacts: [right_foot, left_foot]
-  tasks:
-    height: {type: com_position, axes: [z], priority: 1, reference: entry, gains: {kp: 270, kd: 10}}
-    attitude: {type: body_orientation, priority: 1, reference: 0, gains: {kp: 200, kd: 15}}
-    rest: {type: joint_damping, priority: 2, gains: {kd: 2}}
-  internal: {s: {between: [right_foot, left_foot], reference: 32 N}}
-  states:
-    stand: {after: 100 ms, to: end}
-    end: {type: final}
-""")
+        path = self.write("b.yaml", STANDS_APART)
         self.assertEqual(self.footfall("run", path, "--quiet", "--no-log").returncode, 0)
         self.refused(self.run_it(path, "--world", "slippery"), 2, "b.yaml:9:", "friction of the world")
         scenario = self.write("s.yaml", "scenario: 1\nbehavior: b.yaml\nworld: slippery\nfor: 50 ms\nexpect: [faults == 0]\n")
         self.refused(self.run_it(scenario), 2, "friction of the world")
+
+    def test_variation_off_is_judged_with_the_friction_that_it_uses(self):
+        low = self.write("low.yaml", "world: 1\nvariation: {friction: {range: [0.2, 1]}}\n")
+        path = self.write("b.yaml", STANDS_APART)
+        self.refused(self.run_it(path, "--world", low), 2, "friction of the world")
+        self.assertEqual(self.footfall("run", path, "--world", low, "--variation", "off", "--no-log", "--quiet").returncode, 0)
+        scenario = self.write("s.yaml", f"scenario: 1\nbehavior: b.yaml\nworld: {low}\nfor: 50 ms\nexpect: [faults == 0]\n")
+        self.refused(self.run_it(scenario), 2, "friction of the world")
+        self.assertEqual(self.footfall("run", scenario, "--variation", "off", "--no-log", "--quiet").returncode, 0)
+
+    def test_a_drawn_push_behind_the_end_is_told_and_fails_nothing(self):
+        path = self.write("s.yaml", "scenario: 1\nbehavior: balance_best\nfor: 50 ms\nworld: varied\nexpect: [{end: time}]\n")
+        check = self.footfall("check", path)
+        self.assertIn("s.yaml:3:6: warning: no push is drawn before 3 s, and the run ends at 0.05 s", check.stderr)
+        result = self.footfall("run", path, "--no-log", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        run = json.loads(result.stdout.splitlines()[-1])["figures"]
+        told = f"push at {run['variation']['push.time_s']:.3g} s"
+        self.assertEqual((run["missed"], run["not_reached"]), ([], [told]))
+        self.assertIn(told + ": not reached", result.stderr)
+
+    def test_off_in_a_derived_scenario_takes_away_what_the_world_draws(self):
+        self.write("s.yaml", "scenario: 1\nbehavior: balance_best\nfor: 50 ms\nvariation: {friction: 0.5}\n")
+        path = self.write("d.yaml", "scenario: 1\nbase: s.yaml\nvariation: off\n")
+        result = self.footfall("run", path, "--no-log", "--json")
+        self.assertEqual(json.loads(result.stdout.splitlines()[-1])["figures"]["variation"], {}, result.stderr)
+
+    def test_a_link_that_the_robot_lacks_is_told_where_it_is_named(self):
+        for key in ("variation: {control_model: {com: {torsoo: {sd: 5 mm}}}}", "control_model: {com: {torsoo: [1 mm, 0 m, 0 m]}}"):
+            self.write("v.yaml", f"world: 1\n{key}\n")
+            world = str(self.folder / "v.yaml")
+            scenario = self.write("s.yaml", "scenario: 1\nbehavior: balance_best\nworld: v.yaml\nfor: 50 ms\n")
+            place = f"v.yaml:2:{key.index('torsoo') + 1}: error: the robot has no body 'torsoo' (did you mean 'torso'?)"
+            self.refused(self.run_it("balance_best", "--world", world), 2, place)
+            self.refused(self.run_it(scenario), 2, place)
+            self.refused(self.footfall("check", scenario), 2, place)
+            for what in (["balance_best", "--world", world], [scenario]):
+                self.refused(self.footfall("sweep", *what, "--seeds", "1", "--for", "50ms", "--out", str(self.folder / "o")), 2, place)
 
     def test_a_folder_as_file(self):
         self.refused(self.run_it(str(self.folder)), 2)

@@ -173,6 +173,30 @@ class Input(SweepCase):
         self.sweep("--vary", "script.2.push.force=[10 N]", what=str(path), expect=2)
         self.assertIn("N from 1 to 1", self.stderr)
 
+    def test_a_draw_of_the_world_that_the_scenario_sets_itself_is_refused_and_the_scenarios_own_varies(self):
+        path = self.folder / "s.yaml"
+        path.write_text("scenario: 1\nbehavior: balance_best\nfor: 0.1 s\nvariation: {friction: 0.5}\n")
+        for name in ("world.variation.friction", "world.ground.friction"):
+            self.sweep("--vary", name + "=[0.4,0.9]", what=str(path), expect=2)
+            self.assertIn(f"'{name}' has no effect: the scenario's `variation:` goes over it; vary 'variation.friction'",
+                          self.stderr)
+        self.sweep("--vary", "variation.friction=[0.4,0.9]", "--vary", "world.variation.friction=[0.4]", what=str(path), expect=2)
+        self.sweep("--vary", "world.variation.start.joints=[0.01]", what=str(path))
+        self.out = self.folder / "own"
+        self.environment["FAKE_LOG"] = str(self.folder / "own_starts")
+        self.sweep("--vary", "variation.friction=[0.4,0.9]", what=str(path))
+        starts = (self.folder / "own_starts").read_text().splitlines()
+        texts = [pathlib.Path(line.split()[1]).read_text() for line in starts]
+        self.assertEqual([f"friction: {x}" in text for x, text in zip((0.4, 0.9), sorted(texts))], [True, True], texts)
+
+    def test_the_friction_of_the_ground_is_that_of_the_runs(self):
+        self.run_it([BINARY, "sweep", "balance_best", "--vary", "world.ground.friction=[0.6,0.9]", "--for", "50ms",
+                     "--out", str(self.out)])
+        for path, friction in zip(sorted((self.out / "files").glob("world-*.yaml"), key=lambda p: p.read_text()), (0.6, 0.9)):
+            self.run_it([BINARY, "run", "balance_best", "--world", str(path), "--for", "50ms", "--no-log"])
+            self.assertIn(f"friction {friction}, feet", self.stdout)
+            self.assertNotIn("friction", self.stdout.split("drawn")[1].split("\n")[0])
+
     def test_save_writes_a_file_with_the_same_plan(self):
         path = self.folder / "s.yaml"
         self.sweep(*VARY, "--seeds", "1..2", "--save", str(path))
