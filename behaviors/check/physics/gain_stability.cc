@@ -236,7 +236,8 @@ class GainCheck {
 
   // The gain without which the rest is stable: kd alone, then with kp, then the integral.
   std::size_t culprit(const TaskSpec& task, const Gains& gains, bool damped, bool exact) {
-    if (grows(loop(task, {0.0, 0.0, gains[2]}, exact), true)) return 2;
+    const bool braked = gains[2] > 0.0;  // kd T = 2 alone neither grows nor decays
+    if (braked && growth_of(loop(task, {0.0, 0.0, gains[2]}, exact)) > 1.0 - kRounding) return 2;
     return grows(loop(task, {gains[0], 0.0, gains[2]}, exact), damped) ? 0 : 1;
   }
   // The first value of a gain, on from the one given by a factor, with which the loop is stable, to
@@ -274,7 +275,9 @@ class GainCheck {
           without += fmt::format("{}{}", without.empty() ? " without " : " and ", kNames[k]);
         }
       }
-      return fmt::format("; {} {:.4g} {} is the most{}{}", kNames[gain], *most, kUnits[gain],
+      std::string number = fmt::format("{:.4g}", *most);
+      if (number == fmt::format("{:g}", gains[gain])) number = fmt::format("{:.7g}", *most);
+      return fmt::format("; {} {} {} is the most{}{}", kNames[gain], number, kUnits[gain],
                          others(held, gain), without);
     };
     const bool none = gain == 1 && gains[0] == 0.0;  // any integral grows, however slowly

@@ -202,6 +202,12 @@ TEST(PhysicsGains, TheMostIsThatWithTheOthersAsTheyAre) {
   EXPECT_NEAR(most, 2833.3, 0.1);
   EXPECT_GT(growth(simulated(1e6, 0.0, 1.001 * most)), 1.0);
   EXPECT_LT(growth(simulated(1e6, 0.0, 0.999 * most)), 1.0);
+  // 3000 - 1e2 / 6000, which is not 3000.
+  EXPECT_THAT(
+      physics(with_gains("{kp: 100, kd: 3000}")),
+      HasSubstr(": kd 3000 1/s is too much for a period of 0.667 ms: an error grows by e in "));
+  EXPECT_THAT(physics(with_gains("{kp: 100, kd: 3000}")),
+              HasSubstr("; kd 2999.983 1/s is the most with kp 100\n"));
   // With kp 1e7 no kd is: kd T > kp T^2 / 4 = 1.11 contradicts kd T < 2 - kp T^2 / 4 = 0.89.
   EXPECT_THAT(physics(with_gains("{kp: 1e7, kd: 5000}")),
               HasSubstr("; kd 3000 1/s is the most without kp\n"));
