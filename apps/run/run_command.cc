@@ -168,11 +168,11 @@ int run_behavior(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware),
                          drawn.values};
-  const auto link = attach_link(options, loop, world, spec);
+  const auto link = attach_link(options, loop, physics, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);
   spec.log = log.get();
-  LiveFiles live = watch_files(options, loop, *backend.hardware, world, spec);
+  LiveFiles live = watch_files(options, loop, *backend.hardware, world, physics, spec);
   spec.reloads = live.reloads.get();
 
   const lab::RunResult result = lab::run(loop, spec);

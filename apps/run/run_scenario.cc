@@ -124,7 +124,7 @@ int run_scenario_file(RunOptions options) {
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(behavior, sensors),
                          drawn.values};
-  const auto link = attach_link(options, loop, world, spec);
+  const auto link = attach_link(options, loop, physics_world(checked.world), spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();

@@ -97,10 +97,9 @@ TaskSignals add_task(const TaskName& task, core::SignalTable& table) {
   add_each("commanded", per, "commanded acceleration", signals.axis_commanded);
   add_each("achieved", per, "achieved acceleration, by the control model", signals.axis_achieved);
   signals.rank = table.add(name + ".rank", core::kNone, "rank of its priority level");
-  signals.condition = table.add(name + ".condition", core::kNone,
-                                "the most that contacts, actuators and the levels before take of a "
-                                "row of its level: 1 nothing, "
-                                "100 all but a hundredth");
+  signals.condition =
+      table.add(name + ".condition", core::kNone,
+                "longest row of all tasks over the smallest pivot of its priority level");
   signals.authority = table.add(name + ".authority", core::kNone,
                                 "feasible part of the commanded accelerations: 1 all, 0 none");
   return signals;

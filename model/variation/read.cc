@@ -50,6 +50,12 @@ constexpr KeySpec kVariationRows[] = {
     key("push", map_of(kVariedPushKeys), "a push in any horizontal direction"),
 };
 
+// Empty if the text is of no file, or of one that these diagnostics do not know.
+std::string file_of(const Mark& mark, const Diagnostics& diagnostics) {
+  const bool known = mark.file >= 0 && mark.file < diagnostics.file_count();
+  return known ? diagnostics.file(mark.file) : "";
+}
+
 // Reads distributions; what they are over is known here only.
 class Reader {
  public:
@@ -116,8 +122,8 @@ class Reader {
     spread(node, "joints", kNone, -1.0, 1.0, out.joints);
     if (const YamlNode* joints = node.find("joints")) {
       const Mark& mark = joints->mark;
-      out.joints_place = fmt::format("{}:{}:{}", mark.file < 0 ? "" : diagnostics_.file(mark.file),
-                                     mark.line, mark.column);
+      out.joints_place =
+          fmt::format("{}:{}:{}", file_of(mark, diagnostics_), mark.line, mark.column);
     }
     spread(node, "rates", kRate, -10.0, 10.0, out.rates);
   }
@@ -174,9 +180,7 @@ class Reader {
 }  // namespace
 
 NamedLink named_link(const YamlEntry& entry, const Diagnostics& diagnostics) {
-  const int file = entry.key_mark.file;
-  const bool known = file >= 0 && file < diagnostics.file_count();
-  return {entry.key, known ? diagnostics.file(file) : "", entry.key_mark};
+  return {entry.key, file_of(entry.key_mark, diagnostics), entry.key_mark};
 }
 
 void check_links(const std::vector<NamedLink>& links, const std::vector<std::string>& bodies,
@@ -199,15 +203,17 @@ Variation read_variation(const YamlNode& node, const Variation& base, Diagnostic
   Reader reader(diagnostics);
   if (const YamlNode* start = node.find("start")) reader.start(*start, out);
   reader.spread(node, "friction", kNone, 0.0, 10.0, out.friction);
-  if (out.friction.kind == Spread::Kind::normal) {
-    diagnostics.error(node.find("friction")->mark, "out-of-range",
+  const YamlNode* friction = node.find("friction");
+  if (friction != nullptr && out.friction.kind == Spread::Kind::normal) {
+    diagnostics.error(friction->mark, "out-of-range",
                       "a friction is no difference from 0: expected {range: [0.6, 1]}");
     out.friction = {};
   }
   if (const YamlNode* model = node.find("control_model")) reader.control_model(*model, out);
   reader.spread(node, "command_delay", kTime, 0.0, 0.02, out.command_delay);
-  if (out.command_delay.kind == Spread::Kind::normal) {
-    diagnostics.error(node.find("command_delay")->mark, "out-of-range",
+  const YamlNode* delay = node.find("command_delay");
+  if (delay != nullptr && out.command_delay.kind == Spread::Kind::normal) {
+    diagnostics.error(delay->mark, "out-of-range",
                       "a delay cannot be negative: expected {range: [0 s, 667 us]}");
     out.command_delay = {};
   }

@@ -143,10 +143,10 @@ void rotate_back(const Reflectors& h, int dims, double* x) noexcept {
 }
 
 int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* order,
-               double* norm2, Reflectors* keep, double* condition, double* work) noexcept {
+               double* norm2, Reflectors* keep, double* smallest, double* work) noexcept {
   const int columns = range.col_last - range.col_first;
   const int most = std::min(columns, range.row_last - range.row_first);
-  double worst2 = 1.0;
+  double least = 0.0;
   int rank = 0;
   for (; rank < most; ++rank) {
     const int first = range.row_first + rank;
@@ -161,25 +161,25 @@ int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* 
     const double size = make_reflector(x, first, range.row_last, c, v, beta);
     if (keep) ++keep->count;
     reflect(x, first, range.row_last, c + 1, range.col_end, v, *beta);
-    worst2 = std::max(worst2, norm2[c] / (size * size));
+    least = rank == 0 ? size : std::min(least, size);
   }
   // What the rank rule rejected is round-off or close to it: it must not feed later levels.
   for (int r = range.row_first + rank; r < range.row_last; ++r) {
     std::fill(x.row(r) + range.col_first + rank, x.row(r) + range.col_last, 0.0);
   }
-  if (condition) *condition = std::sqrt(worst2);
+  if (smallest) *smallest = least;
   return rank;
 }
 
 int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule& rule, int* order,
                         double* norm2, const double* rhs, const double* weight, double* z,
-                        Reflectors* keep, double* condition, const LevelScratch& scratch) noexcept {
+                        Reflectors* keep, double* smallest, const LevelScratch& scratch) noexcept {
   const int m = level.col_last - level.col_first;
   const int row_first = level.row0 + level.done;
   const QrRange range = {row_first,      level.row0 + level.dims, level.col_first,
                          level.col_last, level.col_end,           level.swap_rows};
   const RankRule by_weight = {rule.tolerance, rule.floor, weight};
-  const int k = pivoted_qr(x, range, by_weight, order, norm2, keep, condition, scratch.work);
+  const int k = pivoted_qr(x, range, by_weight, order, norm2, keep, smallest, scratch.work);
   for (int i = 0; i < m; ++i) {
     const int c = level.col_first + i;
     double value = rhs[order[c]];

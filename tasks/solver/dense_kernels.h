@@ -41,12 +41,10 @@ struct RankRule {
 };
 
 // Pivoted Householder QR. `order` and `norm2` are indexed by column and permuted with the columns.
-// Writes exact zeros below the diagonal. Returns the rank; `condition` (may be null) gets the
-// largest ratio of a column's norm before any projection to its pivot, over the kept ones; 1
-// without any. An error of 1/ratio in the column may be all of what is left of it. `keep` (may be
-// null) collects the reflections.
+// Writes exact zeros below the diagonal. Returns the rank; `smallest` (may be null) gets the
+// smallest kept pivot, 0 without any. `keep` (may be null) collects the reflections.
 int pivoted_qr(const Block& x, const QrRange& range, const RankRule& rule, int* order,
-               double* norm2, Reflectors* keep, double* condition, double* work) noexcept;
+               double* norm2, Reflectors* keep, double* smallest, double* work) noexcept;
 
 // One priority level of a cascade. Columns [col_first, col_last) of x are the level's rows
 // transposed, expressed in coordinates of which the first `done` are already spent on earlier
@@ -69,7 +67,7 @@ struct LevelScratch {
 };
 int solve_cascade_level(const Block& x, const LevelRange& level, const RankRule& rule, int* order,
                         double* norm2, const double* rhs, const double* weight, double* z,
-                        Reflectors* keep, double* condition, const LevelScratch& scratch) noexcept;
+                        Reflectors* keep, double* smallest, const LevelScratch& scratch) noexcept;
 
 // Householder QR without pivoting of a (rows x cols, rows >= cols) block, then the right-hand side
 // column `cols` is carried along and R y = (Qᵀ b) solved: least squares. y has `cols` entries.

@@ -140,6 +140,9 @@ void Wbosc::gather() noexcept {
     }
     *reinterpret_cast<model::DoublePair*>(norm2 + c) = sum;
   }
+  double longest2 = 0.0;
+  for (int c = col_t_; c < col_h_; ++c) longest2 = std::max(longest2, norm2[c]);
+  longest_row_ = std::sqrt(longest2);
   for (int c = 0; c < columns_; ++c) {
     contact_order_[extent(c)] = c;
     actuator_order_[extent(c)] = c - col_u_;
@@ -255,9 +258,12 @@ void Wbosc::solve_level(int level, int first, int last) noexcept {
                             sizes_.nv};
   double* dense = work_.data() + 2 * (stride_ + sizes_.nv + sizes_.task_rows);
   const LevelScratch scratch = {y_.data(), dense, work_.data()};
-  const int rank = solve_cascade_level(x, range, rule, level_order_.data(), column_norm2_.data(),
-                                       rhs_.data(), problem_.weight.data(), z_.data(), &keep,
-                                       &solution_.level_condition[extent(level)], scratch);
+  double smallest = 0.0;
+  const int rank =
+      solve_cascade_level(x, range, rule, level_order_.data(), column_norm2_.data(), rhs_.data(),
+                          problem_.weight.data(), z_.data(), &keep, &smallest, scratch);
+  // Against the longest row of all levels: which level a row stands in does not matter.
+  solution_.level_condition[extent(level)] = rank > 0 ? longest_row_ / smallest : 1.0;
   level_reflectors_ = keep.count;
   solution_.level_rank[extent(level)] = rank;
   level_rank_sum_ += rank;

@@ -78,8 +78,8 @@ struct WboscSolution {
   std::vector<double> internal_measured;  // internal_rows: W_int f under tau_measured
   std::vector<int> level_rows;            // levels: rows of a weight above 0
   std::vector<int> level_rank;            // levels
-  // levels: the largest ratio of a row to what contacts, actuators and the levels before leave of
-  // it (norms of the whitened rows); 1 without rows
+  // levels: the longest row of all levels over the smallest pivot that this level keeps (whitened
+  // rows); 1 without rows
   std::vector<double> level_condition;
   int contact_rank = 0;
   int actuation_rank = 0;  // of φ; na - rank internal-force directions
@@ -125,6 +125,7 @@ class Wbosc {
   int stride_ = 0;
   int col_u_ = 0, col_t_ = 0, col_h_ = 0, columns_ = 0;
 
+  double longest_row_ = 0.0;          // of the tasks, after whitening
   std::vector<double> column_norm2_;  // squared, after whitening: the yardstick of every rank
   std::vector<int> contact_order_, actuator_order_, level_order_;
   std::vector<double> a1_;  // constrained acceleration, contact_rank

@@ -255,9 +255,9 @@ TEST(Run, AGoalVelocityGoesOnAlongTheAxisThatHasRoom) {
   const std::vector<engine::EditBatch> edits = lab::goal_edits(*rig.behavior, spec);
   ASSERT_EQ(edits.size(), 3U);
   EXPECT_NEAR(edits[1].over, 0.5, 1e-9);
-  EXPECT_NEAR(edits[1].values.at(0).second, 1000.0, 1e-9);
+  EXPECT_NEAR(edits[1].values.at(0).value, 1000.0, 1e-9);
   EXPECT_EQ(edits[2].over, 1.0);
-  EXPECT_NEAR(edits[2].values.at(0).second, 0.05, 1e-12);
+  EXPECT_NEAR(edits[2].values.at(0).value, 0.05, 1e-12);
 }
 
 }  // namespace

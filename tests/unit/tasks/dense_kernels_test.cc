@@ -27,7 +27,7 @@ struct Factored {
   std::vector<int> order;
   std::vector<double> norm2, v, beta;
   tasks::Reflectors keep;
-  double condition = 0.0;
+  double smallest = 0.0;
   int rank = 0;
 };
 
@@ -44,7 +44,7 @@ Factored factor_columns(const Matrix& m, int factor, const tasks::RankRule& rule
   f.keep = {f.v.data(), f.beta.data(), rows, 0};
   std::vector<double> work(static_cast<std::size_t>(rows + columns));
   f.rank = tasks::pivoted_qr({x.data(), columns}, {0, rows, 0, factor, columns, rows}, rule,
-                             f.order.data(), f.norm2.data(), &f.keep, &f.condition, work.data());
+                             f.order.data(), f.norm2.data(), &f.keep, &f.smallest, work.data());
   f.x = Matrix::of_rows(x.data(), rows, columns);
   return f;
 }
@@ -82,27 +82,18 @@ TEST(PivotedQr, FindsTheRankAndLeavesExactZerosBehindIt) {
   const Factored f = factor_columns(m, 6);
   EXPECT_EQ(f.rank, 3);
   EXPECT_EQ(f.x.tail(5).max_abs(), 0.0);
-  EXPECT_GE(f.condition, 1.0);
+  EXPECT_GT(f.smallest, 0.0);
 }
 
-// By hand: b leaves the plane of a by an angle of 1/50 (tan), so of its length sqrt(1 + 50²)/50
-// only 1/50 is new. A level of one row that earlier rotations have shortened shows, too: its length
-// before is in norm2.
-TEST(PivotedQr, ConditionIsTheLengthOfAColumnOverWhatIsNewInIt) {
+// By hand: of b = 0.999 (1, 1/50) only 0.999/50 is not in the direction of a = (1, 0).
+TEST(PivotedQr, TheSmallestPivotIsWhatTheOtherColumnsLeave) {
   Matrix m(3, 2);
   m(0, 0) = 1.0;
   m(0, 1) = 0.999;
   m(1, 1) = 0.999 / 50.0;
-  EXPECT_NEAR(factor_columns(m, 2).condition, std::sqrt(1.0 + 50.0 * 50.0), 1e-9);
-  EXPECT_NEAR(factor_columns(m, 1).condition, 1.0, kRound);
-  std::vector<double> x = {0.02, 0.0, 0.0}, work(8);
-  std::vector<int> order = {0};
-  std::vector<double> before = {1.0};  // squared
-  double condition = 0.0;
-  EXPECT_EQ(tasks::pivoted_qr({x.data(), 1}, {0, 3, 0, 1, 1, 3}, {}, order.data(), before.data(),
-                              nullptr, &condition, work.data()),
-            1);
-  EXPECT_NEAR(condition, 50.0, 1e-9);
+  EXPECT_NEAR(factor_columns(m, 2).smallest, 0.999 / 50.0, kRound);
+  EXPECT_NEAR(factor_columns(m, 1).smallest, 1.0, kRound);
+  EXPECT_EQ(factor_columns(Matrix(3, 2), 2).smallest, 0.0);
 }
 
 TEST(PivotedQr, ColumnsBelowTheAbsoluteFloorHaveNoRank) {
