@@ -67,12 +67,11 @@ void check_links_of(const sim::WorldDescription& world, const model::RobotDescri
 sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
                                  const sim::WorldDescription& world, model::Draw& drawn) {
   if (options.backend != "mujoco") return world;
-  const std::string beyond = model::start_beyond_limits(world.variation, behavior.robot);
-  if (!beyond.empty()) throw InputError(beyond);
   const std::vector<std::string> links = world.variation.mass.kind == model::Spread::Kind::none
                                              ? std::vector<std::string>()
                                              : model::body_names(behavior.robot.model_path);
   drawn = model::draw(world.variation, behavior.robot.joint_count(), links, options.seed);
+  model::keep_start_within_limits(drawn, behavior.robot);
   model::round_command_delay(drawn, world.actuators.command_delay,
                              behavior.robot.period_s() / world.physics.steps_per_tick);
   return sim::with_draw(world, drawn);

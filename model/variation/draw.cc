@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kCut = 3.0;  // standard deviations
 constexpr const char* kDelayName = "command_delay_s";
+constexpr const char* kJointsName = "start.joints_rad";
 
 // The order is part of what a seed means: new quantities go to the end.
 enum class Stream : std::uint32_t {
@@ -84,29 +85,6 @@ std::optional<double> Variation::least_friction() const {
 
 double Variation::most_command_delay() const { return command_delay.most(); }
 
-std::string start_beyond_limits(const Variation& variation, const RobotDescription& robot) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  constexpr double kRounding = 1e-9;  // rad
-  const Spread& spread = variation.joints;
-  if (!is_drawn(spread)) return {};
-  const JointDescription* worst = nullptr;
-  double beyond = kRounding;
-  for (const JointDescription& joint : robot.joints) {
-    const double here = std::max(joint.position_min - (joint.posture + spread.least()),
-                                 joint.posture + spread.most() - joint.position_max);
-    if (here <= beyond) continue;
-    beyond = here;
-    worst = &joint;
-  }
-  if (worst == nullptr) return {};
-  return fmt::format(
-      "{}: error: joint '{}' could begin {:.3g} deg beyond its limits: it is drawn between {:.3g} "
-      "and {:.3g} deg from its posture of {:.3g} deg, and its limits are {:.3g} and {:.3g} deg",
-      variation.joints_place, worst->name, beyond / kDegree, spread.least() / kDegree,
-      spread.most() / kDegree, worst->posture / kDegree, worst->position_min / kDegree,
-      worst->position_max / kDegree);
-}
-
 Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
           std::uint64_t seed) {
   Draw out;
@@ -121,7 +99,7 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
   if (is_drawn(v.joints)) {
     Source source(seed, Stream::joints);
     for (int j = 0; j < joints; ++j) out.joints.push_back(source.of(v.joints));
-    tell("start.joints_rad", out.joints);
+    tell(kJointsName, out.joints);
   }
   if (is_drawn(v.rates)) {
     Source source(seed, Stream::rates);
@@ -172,6 +150,17 @@ void round_command_delay(Draw& drawn, double own, double step) {
   *drawn.command_delay = std::round((own + *drawn.command_delay) / step) * step - own;
   for (auto& [name, values] : drawn.values) {
     if (name == kDelayName) values = {*drawn.command_delay};
+  }
+}
+
+void keep_start_within_limits(Draw& drawn, const RobotDescription& robot) {
+  for (std::size_t j = 0; j < drawn.joints.size() && j < robot.joints.size(); ++j) {
+    const JointDescription& joint = robot.joints[j];
+    drawn.joints[j] = std::clamp(drawn.joints[j], std::min(0.0, joint.position_min - joint.posture),
+                                 std::max(0.0, joint.position_max - joint.posture));
+  }
+  for (auto& [name, values] : drawn.values) {
+    if (name == kJointsName) values = drawn.joints;
   }
 }
 

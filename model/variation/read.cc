@@ -120,11 +120,6 @@ class Reader {
     check_keys(node, kVariedStartKeys, diagnostics_);
     spread(node, "velocity", kVelocity, -10.0, 10.0, out.velocity);
     spread(node, "joints", kNone, -1.0, 1.0, out.joints);
-    if (const YamlNode* joints = node.find("joints")) {
-      const Mark& mark = joints->mark;
-      out.joints_place =
-          fmt::format("{}:{}:{}", file_of(mark, diagnostics_), mark.line, mark.column);
-    }
     spread(node, "rates", kRate, -10.0, 10.0, out.rates);
   }
 

@@ -49,7 +49,6 @@ void check_links(const std::vector<NamedLink>& links, const std::vector<std::str
 struct Variation {
   Spread velocity;                    // m/s, of the base at the start, x and y each
   Spread joints;                      // rad, each joint's angle at the start, from its posture
-  std::string joints_place;           // where that is written, `w.yaml:3:11`
   Spread rates;                       // rad/s, of the base at the start, about each of its axes
   Spread friction;                    // of the ground, in the place of the world's
   Spread mass;                        // relative change of each link's mass in the control model
@@ -72,9 +71,6 @@ extern const core::KeyTable kSpreadKeys, kVariedStartKeys, kVariedModelKeys, kVa
 // takes all away.
 Variation read_variation(const core::YamlNode& node, const Variation& base,
                          core::Diagnostics& diagnostics);
-
-// Which joint could begin beyond its limits, in one line; empty if none.
-std::string start_beyond_limits(const Variation& variation, const RobotDescription& robot);
 
 // Before the merge of a world or scenario over its base (core::YamlLayers): `off` stays as a value,
 // since what it takes away may come from elsewhere, such as a scenario's world; one kind of
@@ -102,6 +98,8 @@ struct Draw {
   std::vector<std::pair<std::string, std::vector<double>>> values;
 };
 
+// Ends the drawn start of a joint at its limits; where its posture is beyond them, at the posture.
+void keep_start_within_limits(Draw& drawn, const RobotDescription& robot);
 // Makes the drawn delay the one that acts: with the world's `own` it is of whole steps of the
 // physics.
 void round_command_delay(Draw& drawn, double own, double step);

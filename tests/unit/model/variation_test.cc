@@ -122,22 +122,19 @@ TEST(Variation, ThreeDeviationsLieWithinWhatCanBeDrawn) {
   }
 }
 
-TEST(Variation, AJointThatCouldBeginBeyondItsLimitsIsNamed) {
+// Where the posture itself is beyond, the draw does not lead further away.
+TEST(Variation, NoJointIsDrawnBeyondItsLimits) {
   model::RobotDescription robot;
-  robot.joints.push_back(
-      {.name = "hip", .position_min = -1.0, .position_max = 1.0, .posture = 0.1});
-  robot.joints.push_back(
-      {.name = "knee", .position_min = 0.1, .position_max = 2.0, .posture = 0.4});
-  // Three deviations of 0.1 rad just reach the knee's limit.
-  EXPECT_EQ(model::start_beyond_limits(read("start: {joints: {sd: 0.1}}"), robot), "");
-  EXPECT_EQ(model::start_beyond_limits(read("start: {joints: -0.3}"), robot), "");
-  EXPECT_EQ(model::start_beyond_limits({}, robot), "");
-  EXPECT_EQ(model::start_beyond_limits(read("start: {joints: {sd: 0.2}}"), robot),
-            "w.yaml:1:17: error: joint 'knee' could begin 17.2 deg beyond its limits: it is drawn "
-            "between -34.4 and 34.4 deg from its posture of 22.9 deg, and its limits are 5.73 and "
-            "115 deg");
-  EXPECT_NE(model::start_beyond_limits(read("start: {joints: {range: [0, 1]}}"), robot), "");
-  EXPECT_NE(model::start_beyond_limits(read("start: {joints: -0.31}"), robot), "");
+  robot.joints = {{.name = "hip", .position_min = -1.0, .position_max = 1.0, .posture = 0.1},
+                  {.name = "knee", .position_min = 0.1, .position_max = 2.0, .posture = 0.4},
+                  {.name = "ankle", .position_min = 0.0, .position_max = 0.2, .posture = 0.3}};
+  for (const auto& [text, kept] : {std::pair("0.05", std::vector{0.05, 0.05, 0.0}),
+                                   std::pair("-0.5", std::vector{-0.5, -0.3, -0.3})}) {
+    Draw drawn = draw(read(std::string("start: {joints: ") + text + "}"), 3, kLinks, 1);
+    model::keep_start_within_limits(drawn, robot);
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(drawn.joints[j], kept[j], 1e-12) << text << j;
+    EXPECT_EQ(drawn.values.at(0).second, drawn.joints);  // what is told
+  }
 }
 
 TEST(Variation, TheMostDelayIsWhatChecksCountOn) {

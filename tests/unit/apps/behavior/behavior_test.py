@@ -123,10 +123,6 @@ class Check(Case):
         off = self.run_it(quick, "--world", late, "--for", "10ms", "--variation", "off")
         self.assertEqual(off.returncode, 0, off.stderr)
 
-    def test_a_start_beyond_the_limits_of_a_joint_is_refused_with_its_place(self):
-        world = self.write("w.yaml", "world: 1\nvariation: {start: {joints: {sd: 18 deg}}}\n")
-        self.refused(self.run_it("balance", "--world", world), 2, "w.yaml:2:29: error: joint '", "beyond its limits")
-
     def test_a_behavior_on_stdin(self):
         result = subprocess.run([BINARY, "check", "-", "--stdin-name", "mine.yaml"], text=True, timeout=100,
                                 input=CHART.replace("to: b", "to: bb"), capture_output=True)
