@@ -89,7 +89,7 @@ int set_values(const SetOptions& options) {
   const auto plan = behaviors::plan_save(path, load, values, target, diagnostics);
   print_diagnostics(diagnostics);
   for (const std::string& reason : plan.refusals) fmt::print(stderr, "error: {}\n", reason);
-  if (plan.refused()) return kBadInput;
+  if (plan.refused()) return plan.unwritable ? kMachineFailed : kBadInput;
   return show_and_write(plan, options.to.empty() ? options.file : options.to, options.dry_run,
                         options.yes);
 }

@@ -11,6 +11,7 @@
 #include "apps/tune/view/tables.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/index.h"
+#include "core/process/machine_error.h"
 #include "core/text/json_text.h"
 #include "core/yaml/glob.h"
 
@@ -138,6 +139,8 @@ int tune_raise(const TuneOptions& options) {
 int tune_key(const TuneOptions& options) {
   try {
     engine::make_key(options.file);
+  } catch (const core::MachineError&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throw InputError(fmt::format("error: {}\n", error.what()));
   }

@@ -11,6 +11,7 @@
 #include "apps/shared/live_options.h"
 #include "apps/tune/view/tables.h"
 #include "core/index.h"
+#include "core/process/machine_error.h"
 #include "core/text/json_text.h"
 #include "core/text/printable.h"
 
@@ -30,6 +31,8 @@ engine::LiveClientSettings settings_of(const TuneOptions& options) {
   if (options.open) return settings;
   try {
     settings.key = options.key.empty() ? engine::default_key() : engine::read_key(options.key);
+  } catch (const core::MachineError&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throw input_error(error.what());
   }

@@ -117,6 +117,7 @@ SavePlanner::File* open_file(SavePlanner& planner, const std::string& path, core
   }
   const std::string folder = fs::path(identity(path)).parent_path().string();
   if (::access(path.c_str(), W_OK) != 0 || ::access(folder.c_str(), W_OK) != 0) {
+    planner.plan.unwritable = true;
     planner.refuse(
         mark, name,
         fmt::format("{} cannot be written: save into a file on top of it (--to FILE)", path));

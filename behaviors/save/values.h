@@ -26,6 +26,7 @@ struct SavePlan {
   std::vector<std::string> refusals;  // `file:line:column: NAME: reason`, one for each value
   std::vector<std::string> notes;     // to be shown before confirmation
 
+  bool unwritable = false;  // one of them: a file or folder may not be written
   bool refused() const { return !refusals.empty(); }
 };
 

@@ -3,7 +3,8 @@
 
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
+
+#include "core/process/machine_error.h"
 
 namespace footfall::lab {
 
@@ -27,7 +28,7 @@ void LogFolder::put(const LoggedFile& file) const {
   fs::create_directories(to.parent_path());
   std::ofstream out(to, std::ios::binary);
   out << file.content;
-  if (!out.flush()) throw std::runtime_error("cannot write '" + to.string() + "'");
+  if (!out.flush()) throw core::MachineError("cannot write '" + to.string() + "'");
 }
 
 }  // namespace footfall::lab
