@@ -52,7 +52,7 @@ SHORT = [
     Command("config", ["config", SQUAT]),
     Command("set", ["set", "mine.yaml", "depth=5cm", "--yes"], writes=["mine.yaml"]),
     Command("new", ["new", "behavior", "fresh"], writes=["fresh.yaml"]),
-    Command("report", ["report", "log", "-o", "page.html"], writes=["page.html"], temporary=True),
+    Command("report", ["report", "log", "-o", "page.html"], writes=["page.html"]),
     Command("runs", ["runs", "list", "--in", "."]),
     Command("events", ["events", "log"]),
     Command("replay", ["replay", "log", "--verify"], temporary=True),
