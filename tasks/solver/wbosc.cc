@@ -140,8 +140,10 @@ void Wbosc::gather() noexcept {
     }
     *reinterpret_cast<model::DoublePair*>(norm2 + c) = sum;
   }
+  int weighted = 0;  // rows of weight 0 stand behind the others and are no part of a level
+  for (int level = 0; level < p.levels; ++level) weighted += solution_.level_rows[extent(level)];
   double longest2 = 0.0;
-  for (int c = col_t_; c < col_h_; ++c) longest2 = std::max(longest2, norm2[c]);
+  for (int c = col_t_; c < col_t_ + weighted; ++c) longest2 = std::max(longest2, norm2[c]);
   longest_row_ = std::sqrt(longest2);
   for (int c = 0; c < columns_; ++c) {
     contact_order_[extent(c)] = c;

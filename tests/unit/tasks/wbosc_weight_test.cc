@@ -121,6 +121,29 @@ TEST_F(WboscWeights, ALevelWithoutWeightHasNoRankAndTakesNothing) {
   EXPECT_LE((Matrix::vector(solver_.solution().asked.data(), 6) - expected).max_abs(), 1e-12);
 }
 
+// Rows of joints are long ones: with the weight 1 they would count for the level above, too.
+TEST_F(WboscWeights, TheConditionOfALevelKnowsNoRowsOfWeightZero) {
+  next();
+  const auto condition = [&](std::optional<double> weight_of_joints) {
+    tasks::WboscProblem& p = solver_.problem();
+    builder_.emplace(model_, p);
+    builder_->contact(kRightFoot);
+    builder_->contact(kLeftFoot);
+    builder_->row(model_.com(), {0.0, 0.0, 1.0}, 0.0);
+    builder_->end_level();
+    for (int j = 0; weight_of_joints && j < 6; ++j) {
+      p.weight[at(p.task_rows)] = *weight_of_joints;
+      builder_->joint_row(j, 0.0);
+    }
+    builder_->end_level();
+    solver_.solve();
+    return solver_.solution().level_condition[0];
+  };
+  const double alone = condition({});
+  EXPECT_NEAR(condition(0.0), alone, 1e-9 * alone);
+  EXPECT_GT(condition(1.0), 1.5 * alone);
+}
+
 // The distance to the limit falls with the weight, until the digits end: never a jump.
 TEST_F(WboscWeights, LightRowsApproachALevelBelow) {
   for (int i = 0; i < 50; ++i) {
