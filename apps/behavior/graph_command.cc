@@ -7,6 +7,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/external_program.h"
+#include "apps/shared/option_value.h"
 #include "apps/shared/output_option.h"
 #include "behaviors/explain/diagram.h"
 #include "core/process/machine_error.h"
@@ -82,7 +83,7 @@ void add_graph_command(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", options->out,
                       "The picture, .svg, .dot or .mmd (default: stdout)");
   command->add_option("--format", options->format, "svg (needs Graphviz), dot or mermaid")
-      ->check(CLI::IsMember({"svg", "dot", "mermaid"}));
+      ->check(one_of({"svg", "dot", "mermaid"}));
   command
       ->add_option("--expand", options->expand,
                    "Draws only this state with its content (may be repeated)")

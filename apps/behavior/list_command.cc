@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/shared/commands.h"
+#include "apps/shared/option_value.h"
 #include "core/text/search_folders.h"
 #include "core/yaml/yaml.h"
 
@@ -53,7 +54,7 @@ void add_list_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "list", "Lists behaviors, worlds and robots that can be named without a path");
   command->add_option("KIND", *kind, "behaviors, worlds or robots; all of them without")
-      ->check(CLI::IsMember({"behaviors", "worlds", "robots"}));
+      ->check(one_of({"behaviors", "worlds", "robots"}));
   command->footer("Example: footfall list worlds");
   command->callback([kind, &exit_code] { exit_code = guarded([&] { return list(*kind); }); });
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
+#include "apps/shared/option_value.h"
 #include "core/text/whole_file.h"
 #include "core/yaml/value_reader.h"
 #include "core/yaml_text/write.h"
@@ -187,7 +188,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
       "new", "Creates a small behavior or robot that runs; never replaces a file");
   command->add_option("KIND", options->kind, "behavior or robot")
       ->required()
-      ->check(CLI::IsMember({"behavior", "robot"}));
+      ->check(one_of({"behavior", "robot"}));
   command
       ->add_option(
           "NAME", options->name,

@@ -34,6 +34,10 @@ std::optional<double> read_number(const core::YamlNode& node, const behaviors::P
 std::optional<behaviors::NamedValue> read_setting(const behaviors::Behavior& behavior,
                                                   const std::string& name, const std::string& text,
                                                   core::Diagnostics& diagnostics) {
+  if (text.find_first_not_of(" \t") == std::string::npos) {
+    diagnostics.error({}, "expected", fmt::format("{}: expected a value after '='", name));
+    return std::nullopt;
+  }
   const core::YamlNode node = core::load_yaml_text(text, name, diagnostics);
   const behaviors::ParameterPart part = behavior.find_parameter_part(name);
   behaviors::NamedValue value{name, {}};

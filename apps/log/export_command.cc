@@ -10,6 +10,7 @@
 #include "apps/shared/log_argument.h"
 #include "apps/shared/output_option.h"
 #include "apps/shared/time_option.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "core/units/units.h"
@@ -43,7 +44,11 @@ std::vector<std::size_t> chosen(const ExportArguments& arguments, const lab::Log
       if (!core::glob_matches(pattern, log.signals[s].name)) continue;
       wanted[s] = any = true;
     }
-    if (!any) throw std::runtime_error("--signals: error: no signal '" + pattern + "' in the log");
+    if (any) continue;
+    std::vector<std::string> names;
+    for (const auto& signal : log.signals) names.push_back(signal.name);
+    throw std::runtime_error(fmt::format("--signals: error: no signal '{}' in the log{}", pattern,
+                                         core::did_you_mean(pattern, names)));
   }
   std::vector<std::size_t> columns;
   for (std::size_t s = 0; s < wanted.size(); ++s) {

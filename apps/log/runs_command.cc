@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/shared/commands.h"
+#include "apps/shared/option_value.h"
 #include "apps/shared/save_dialog.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/text/json_text.h"
@@ -119,7 +120,7 @@ void add_runs_command(CLI::App& app, int& exit_code) {
       ->add_option("RUN", options->run, "Its folder's name; the newest run without");
   CLI::App* pruning = add("prune", "Removes old runs, newest kept; asks before", prune);
   pruning->add_option("--keep", options->keep, "How many stay")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least(0, "a whole number from 0 on"))
       ->capture_default_str();
   pruning->add_flag("--yes", options->yes, "Removes without asking");
   command->require_subcommand(1);

@@ -10,6 +10,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/option_value.h"
 #include "apps/shared/time_option.h"
 #include "core/units/units.h"
 #include "lab/replay/why.h"
@@ -62,7 +63,7 @@ void add_why_command(CLI::App& app, int& exit_code) {
                                  "A time, e.g. 12.3s (default: the fall, or the last transition)");
   command->add_option("--tick", arguments->tick, "A tick instead of a time")
       ->excludes(at)
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0, "a whole number from 0 on"));
   command->footer("Example: footfall why out/run --at 12.3s");
   command->callback(
       [arguments, &exit_code] { exit_code = guarded([&] { return run_why(*arguments); }); });

@@ -7,6 +7,7 @@
 #include "apps/reference/json_schema.h"
 #include "apps/reference/reference.h"
 #include "apps/shared/commands.h"
+#include "apps/shared/option_value.h"
 #include "behaviors/language/language.h"
 #include "core/text/json_text.h"
 #include "lab/scenario/keys.h"
@@ -28,7 +29,7 @@ void add_schema_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("schema", "Prints the JSON Schema of a kind of file, for editors");
   command->add_option("KIND", *kind, fmt::format("One of {}", fmt::join(kinds, ", ")))
-      ->check(CLI::IsMember(kinds));
+      ->check(one_of(kinds));
   command->footer("Example: footfall schema behavior > behavior.schema.json   (docs/editor.md)");
   command->callback([kind, &exit_code] {
     for (const core::FileTable* file : file_tables()) {

@@ -2,50 +2,32 @@
 #include "apps/run/run_options.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <stdexcept>
 
+#include "apps/shared/option_value.h"
 #include "apps/shared/time_option.h"
 
 namespace footfall::apps {
 
-namespace {
-
-// CLI11's own message would list the limits of a double.
-CLI::Validator at_least(std::int64_t least, const char* what) {
-  return CLI::Validator(
-      [least, what](std::string& text) {
-        std::int64_t value = 0;
-        const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool good =
-            problem == std::errc() && end == text.data() + text.size() && value >= least;
-        return good ? std::string() : "expected " + std::string(what) + ", got '" + text + "'";
-      },
-      "", "");
-}
-
-}  // namespace
-
 void add_run_options(CLI::App& command, RunOptions& o) {
-  const CLI::Validator positive = at_least(1, "a whole number above 0");
   command
       .add_option("BEHAVIOR", o.behavior,
                   "Behavior file, or the name of one in behaviors/library; or a scenario file")
       ->required();
   command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's");
   command.add_option("--backend", o.backend, "mujoco (physics) or stub (double integrators)")
-      ->check(CLI::IsMember({"mujoco", "stub"}))
+      ->check(one_of({"mujoco", "stub"}))
       ->capture_default_str();
   command.add_option("--world", o.world, "World file, or the name of one in sim/worlds")
       ->capture_default_str();
   command.add_option("--for", o.duration_text,
                      "Maximum duration, e.g. 20s (default 20 s, with --steps N 20 s + N s)");
-  command.add_option("--steps", o.steps, "Ends after this many steps")->check(positive);
+  command.add_option("--steps", o.steps, "Ends after this many steps")->check(above_zero());
   command.add_option("--seed", o.seed, "Seed of all random numbers")
       ->check(at_least(0, "a whole number from 0 on"))
       ->capture_default_str();
   command.add_option("--variation", o.variation, "off: the seed draws nothing of the world")
-      ->check(CLI::IsMember({"off"}));
+      ->check(one_of({"off"}));
   command.add_option("--set", o.set,
                      "NAME=VALUE: a parameter, gain or planner value, e.g. lift_time=160ms");
   command.add_option(
@@ -69,13 +51,13 @@ void add_run_options(CLI::App& command, RunOptions& o) {
       .add_option("--log-every", o.log_every,
                   "Logs the derived signals of every N-th tick, and of all ticks around "
                   "transitions and faults")
-      ->check(positive)
+      ->check(above_zero())
       ->capture_default_str();
   command.add_flag("--realtime", o.realtime, "Paced by the wall clock");
   command.add_flag("--reload", o.reload,
                    "Loads a changed behavior file into the run, in a state with `reload: ok`");
   command.add_option("--allow", o.allow, "Permissions of the behavior's scripts: files, processes")
-      ->check(CLI::IsMember({"files", "processes"}));
+      ->check(one_of({"files", "processes"}));
   add_live_options(command, o.live);
   command.add_flag("--json", o.json, "One JSON object as the last line on stdout");
   command.add_flag("--quiet", o.quiet, "No status line, no summary");

@@ -12,8 +12,11 @@ namespace footfall::apps {
 void require_no_input(const char* option, const std::string& output,
                       const std::vector<std::string>& inputs) {
   if (output.empty() || output == "-") return;
+  std::error_code error;
+  if (std::filesystem::is_directory(output, error)) {
+    throw InputError(fmt::format("{}: error: '{}' is a folder, expected a file", option, output));
+  }
   for (const std::string& input : inputs) {
-    std::error_code error;
     if (!std::filesystem::is_regular_file(output, error)) return;
     if (!std::filesystem::equivalent(output, input, error)) continue;
     throw InputError(

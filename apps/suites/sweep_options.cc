@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/run/run_setup.h"
+#include "apps/shared/option_value.h"
 #include "lab/process/pool.h"
 
 namespace footfall::apps {
@@ -45,7 +46,7 @@ void add_sweep_options(CLI::App& command, SweepCommandOptions& o) {
   command.add_option("--out", o.out, "Folder of the results (default: out/sweep/NAME)");
   command
       .add_option("-j,--jobs", o.jobs, "Number of parallel runs (default: one for each processor)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command.add_option("--shard", o.shard_text,
                      "I/N: every N-th run from the I-th on, stored in its own file");
   command.add_flag("--extend", o.extend,
@@ -59,7 +60,7 @@ void add_sweep_options(CLI::App& command, SweepCommandOptions& o) {
   command.add_option("--report", o.report, "Writes the report of the results in this folder");
   command.add_option("--csv", o.csv, "Writes the results in this folder as sweep.csv");
   command.add_option("--slurm", o.slurm, "Writes a script for Slurm: a job array of N shards")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command.add_option("--template", o.slurm_template,
                      "Template of that script (default: lab/slurm/array.sh)");
   command.add_option("--program", o.program,

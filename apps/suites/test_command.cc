@@ -11,6 +11,7 @@
 
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "apps/shared/option_value.h"
 #include "apps/shared/output_option.h"
 #include "apps/shared/time_option.h"
 #include "core/process/file_lock.h"
@@ -340,7 +341,7 @@ void add_options(CLI::App& command, TestOptions& o) {
       "Scenario files, or folders of them (default: tests/runs/regression and behaviors)");
   command
       .add_option("-j,--jobs", o.jobs, "Number of parallel runs (default: one for each processor)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command.add_option("--filter", o.filter,
                      "Only scenarios whose name or path matches, e.g. 'push*'");
   command.add_option("--label,--labels", o.labels, "Only scenarios with one of these labels");

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
+#include "apps/shared/option_value.h"
 #include "apps/tune/model/options.h"
 #include "apps/tune/model/quantity.h"
 #include "apps/tune/session.h"
@@ -153,7 +154,7 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   tune->add_option("--session", o->session,
                    "The engine to talk to, by its session (see list-engines); needed if there are "
                    "several")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   tune->add_option("--who", o->who, "Your name for other users and the log (default: user@host)");
   add_time(*tune, "--timeout", o->timeout, "How long to wait for an answer (default 3 s)");
   add_views(*tune, o, exit_code);

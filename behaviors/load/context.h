@@ -45,9 +45,18 @@ struct GainEntry {
   std::array<int, 3> slots{-1, -1, -1};  // kp, ki, kd
   std::array<int, 3> sizes{0, 0, 0};
   std::array<bool, 3> computed{};  // is an expression: compiled where used, not live
+  std::array<bool, 3> by_axis{};   // has values by axis: not for tasks with other axes
   std::vector<std::string> axes;   // axes of the first task that uses it
   bool made = false;
   bool overlaid = false;  // used by some task, possibly below an inner layer's
+};
+
+// `--set gains.TABLE.TASK.kp.AXIS=VALUE`: waits until the axes of the task are known.
+struct AxisSetting {
+  std::string name;  // as given
+  std::string gain;  // `gains.TABLE.TASK.kp`
+  std::string axis;  // its name, or its number
+  core::YamlNode value;
 };
 
 // Name scope of an expression or value.
@@ -76,6 +85,7 @@ struct LoadContext {
   std::vector<const StateSource*> sources;                          // by state index
   std::map<std::string, GainEntry> gain_entries;                    // by name; stable addresses
   std::array<std::optional<std::array<double, 2>>, 3> gain_ranges;  // kp, ki, kd
+  std::vector<AxisSetting> axis_settings;                           // of --set, in order
   std::deque<core::YamlNode> substituted;  // stacks with arguments put in; stable addresses
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
   std::vector<std::string> used_templates, used_stacks, used_torque_loops;

@@ -2,6 +2,8 @@
 // checked exactly like the value that it replaces.
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "behaviors/load/context.h"
 #include "behaviors/load/steps.h"
 #include "core/diagnostics/did_you_mean.h"
@@ -66,14 +68,26 @@ std::optional<core::Dimension> written_dimension(const core::YamlNode& node) {
   return std::nullopt;
 }
 
+// `NAME.AXIS` and `NAME[NUMBER]` in their two parts; the second one is empty if there is none.
+std::array<std::string, 2> split_part(const std::string& name) {
+  const bool numbered = name.ends_with(']');
+  const std::size_t end = name.rfind(numbered ? '[' : '.');
+  if (end == std::string::npos) return {name, ""};
+  return {name.substr(0, end), name.substr(end + 1, name.size() - end - (numbered ? 2 : 1))};
+}
+
 // `goal.x`: one value of a parameter that is a list; nullptr if there is none.
 core::YamlNode* component(core::YamlNode& parameters, const std::string& name) {
   constexpr std::string_view kAxes = "xyz";
-  const std::vector<std::string> parts = core::split_dots(name);
-  core::YamlNode* list = parts.size() == 2 ? child(parameters, parts[0]) : nullptr;
+  const auto [whole, part] = split_part(name);
+  core::YamlNode* list = part.empty() ? nullptr : child(parameters, whole);
   if (list != nullptr && list->is_map()) list = child(*list, "value");
-  if (list == nullptr || !list->is_sequence() || parts[1].size() != 1) return nullptr;
-  const std::size_t index = kAxes.find(parts[1]);
+  if (list == nullptr || !list->is_sequence()) return nullptr;
+  std::size_t index = part.size() == 1 ? kAxes.find(part) : std::string_view::npos;
+  if (name.ends_with(']')) {
+    const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+    if (error != std::errc() || stop != part.data() + part.size()) return nullptr;
+  }
   return index < list->items.size() ? &list->items[index] : nullptr;
 }
 
@@ -101,30 +115,45 @@ void set_parameter(LoadContext& context, const std::string& name, core::YamlNode
   }
 }
 
-void set_gain(LoadContext& context, const std::string& name, std::vector<std::string> parts,
-              core::YamlNode value) {
-  core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
-  const std::string& last = parts.back();
-  if (map == nullptr) return;
-  if (parts.size() == 4 && (last == "kp" || last == "ki" || last == "kd")) {
-    put_or_replace(*map, last, std::move(value));
-    return;
+bool is_gain(std::string_view key) { return key == "kp" || key == "ki" || key == "kd"; }
+
+// `gains.single.swing.kp`, or one axis of it, `.kp.x` and `.kp[0]`.
+void set_gain(LoadContext& context, const std::string& name, core::YamlNode value) {
+  std::string gain = name, axis;
+  if (const auto parts = core::split_dots(name); parts.size() > 4 || name.ends_with(']')) {
+    const auto [whole, part] = split_part(name);
+    gain = whole, axis = part;
   }
-  context.error(value.mark, "unknown-setting",
-                fmt::format("--set {}: expected gains.TABLE.TASK.kp, ki or kd", name));
+  const std::vector<std::string> parts = core::split_dots(gain);
+  core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
+  if (map == nullptr) return;
+  if (parts.size() != 4 || !is_gain(parts.back())) {
+    context.error(value.mark, "unknown-setting",
+                  fmt::format("--set {}: expected gains.TABLE.TASK.kp, ki or kd, or one axis of "
+                              "it, gains.TABLE.TASK.kp.AXIS",
+                              name));
+  } else if (axis.empty()) {
+    put_or_replace(*map, parts.back(), std::move(value));
+    std::erase_if(context.axis_settings, [&](const AxisSetting& s) { return s.gain == gain; });
+  } else if (child(*map, parts.back()) == nullptr) {
+    context.error(value.mark, "unknown-setting",
+                  fmt::format("--set {}: there is no '{}'{}", name, parts.back(),
+                              core::did_you_mean(parts.back(), keys_of(*map))));
+  } else {
+    context.axis_settings.push_back({name, gain, axis, std::move(value)});
+  }
 }
 
 void apply(LoadContext& context, const std::string& name, const std::string& text) {
-  core::YamlNode value = core::load_yaml_text(text, "--set " + name, context.diagnostics);
-  if (value.is_null()) {
-    if (!context.diagnostics.has_errors()) {
-      context.error({}, "expected", fmt::format("--set {}: expected a value", name));
-    }
+  if (text.find_first_not_of(" \t") == std::string::npos) {
+    context.error({}, "expected", fmt::format("--set {}: expected a value after '='", name));
     return;
   }
+  core::YamlNode value = core::load_yaml_text(text, "--set " + name, context.diagnostics);
+  if (value.is_null()) return;
   const std::vector<std::string> parts = core::split_dots(name);
   if (parts[0] == "gains") {
-    set_gain(context, name, parts, std::move(value));
+    set_gain(context, name, std::move(value));
   } else if (parts[0] == "planners") {
     core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
     if (map != nullptr && parts.size() >= 3) put_or_replace(*map, parts.back(), std::move(value));

@@ -17,6 +17,7 @@
 
 #include "core/process/machine_error.h"
 #include "core/text/printable.h"
+#include "engine/edits/door.h"
 #include "engine/lcm/bus.h"
 #include "engine/lcm/known_engines.h"
 #include "engine/live/codec.h"
@@ -44,6 +45,15 @@ std::string user_at_host() {
   return core::on_one_line(name + "@" + host_name());
 }
 
+// A name that the engine would refuse as malformed, or cut.
+std::string name_for_others(const std::string& who) {
+  if (who.empty()) return core::printable(user_at_host(), kMaxWho);
+  if (who.size() <= kMaxWho && core::printable(who, kMaxWho) == who) return who;
+  throw std::invalid_argument("'" + core::printable(who, kMaxWho) +
+                              "' is no name of a user: expected at most " +
+                              std::to_string(kMaxWho) + " bytes of printable text");
+}
+
 int index_of(const std::vector<std::string>& names, std::string_view name) {
   const auto found = std::ranges::find(names, name);
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
@@ -54,7 +64,7 @@ int index_of(const std::vector<std::string>& names, std::string_view name) {
 struct LiveClient::Impl {
   explicit Impl(const LiveClientSettings& how) : settings(how), bus(url_of(how), kLargest) {
     check_live_prefix(how.prefix);
-    if (settings.who.empty()) settings.who = user_at_host();
+    settings.who = name_for_others(settings.who);
     if (sodium_init() < 0) throw core::MachineError("this machine gives no random numbers");
     randombytes_buf(&number, sizeof number);
     number = std::max<std::int64_t>(1, number & INT64_MAX);

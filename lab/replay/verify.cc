@@ -18,10 +18,6 @@ namespace {
 constexpr std::size_t kMostLines = 12;
 constexpr std::int64_t kFollow = 3000;  // ticks to search for a difference visible in floats
 
-std::string value_name(const LoggedParameter& parameter, int k) {
-  return parameter.size == 1 ? parameter.name : fmt::format("{}[{}]", parameter.name, k);
-}
-
 std::vector<std::string> parameter_differences(const Log& log,
                                                const behaviors::Behavior& behavior) {
   std::vector<std::string> lines;
@@ -41,7 +37,8 @@ std::vector<std::string> parameter_differences(const Log& log,
       const double then = log.parameter_values[at(logged.slot + k)];
       const double now = behavior.values[at(info.slot + k)];
       if (core::same_bits(then, now)) continue;
-      lines.push_back(fmt::format("{}: {} in the log, {} now", value_name(logged, k), then, now));
+      lines.push_back(
+          fmt::format("{}: {} in the log, {} now", behaviors::value_name(info, k), then, now));
     }
   }
   for (const behaviors::ParameterInfo& info : behavior.parameters) {

@@ -27,11 +27,11 @@ std::string names_of(const behaviors::Chart& chart, const behaviors::Range& targ
 
 constexpr double kPlanRow = 5e-3;  // m
 
-// `goal[1]`: the parameter and which of its values.
+// `goal.y`: the parameter and which of its values.
 std::string slot_name(const std::vector<behaviors::ParameterInfo>& parameters, int slot) {
   for (const behaviors::ParameterInfo& p : parameters) {
     if (slot < p.slot || slot >= p.slot + p.size) continue;
-    return p.size == 1 ? p.name : fmt::format("{}[{}]", p.name, slot - p.slot);
+    return behaviors::value_name(p, slot - p.slot);
   }
   return fmt::format("slot {}", slot);
 }

@@ -85,9 +85,8 @@ class EventCheck {
   }
 
  private:
-  // Alternatives for a misspelt pattern; prefixes if it is a prefix.
+  // Alternatives for a misspelt pattern: prefixes, and before them events if it is none.
   std::vector<std::string> candidates(bool prefix) const {
-    if (!prefix) return {raised_.begin(), raised_.end()};
     std::set<std::string> found;
     for (const std::string& event : raised_) {
       for (std::size_t dot = event.find('.'); dot != std::string::npos;
@@ -96,7 +95,9 @@ class EventCheck {
       }
       found.insert(event + ".*");
     }
-    return {found.begin(), found.end()};
+    std::vector<std::string> names(found.begin(), found.end());
+    if (!prefix) names.insert(names.begin(), raised_.begin(), raised_.end());
+    return names;
   }
 
   bool is_raised(const std::string& pattern) const {

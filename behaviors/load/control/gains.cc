@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "behaviors/language/language.h"
 #include "behaviors/load/control/steps.h"
@@ -99,6 +100,50 @@ void check_values(LoadContext& context, const core::YamlNode& node, const Parame
   }
 }
 
+// Index of an axis by name or number; an error and nothing if there is none.
+std::optional<std::size_t> find_axis(LoadContext& context, const AxisSetting& setting,
+                                     const GainAxes& use) {
+  std::size_t index = 0;
+  const char* const end = setting.axis.data() + setting.axis.size();
+  const auto [stop, problem] = std::from_chars(setting.axis.data(), end, index);
+  if (problem != std::errc() || stop != end) {
+    index =
+        static_cast<std::size_t>(std::ranges::find(use.names, setting.axis) - use.names.begin());
+  }
+  if (index < use.names.size()) return index;
+  context.error(setting.value.mark, "unknown-setting",
+                fmt::format("--set {}: {} has no axis '{}'{}", setting.name, setting.gain,
+                            setting.axis, core::did_you_mean_or_list(setting.axis, use.names)));
+  return std::nullopt;
+}
+
+void refuse_axis_settings(LoadContext& context, const ParameterInfo& info) {
+  for (const AxisSetting& setting : context.axis_settings) {
+    if (setting.gain != info.name) continue;
+    context.error(setting.value.mark, "unknown-setting",
+                  fmt::format("--set {}: {} is computed; set what it is computed from, or all of "
+                              "it",
+                              setting.name, setting.gain));
+  }
+}
+
+// Puts the values of --set for single axes in; returns whether there were any.
+bool apply_axis_settings(LoadContext& context, const ParameterInfo& info, const GainAxes& use,
+                         std::vector<double>& values) {
+  bool any = false;
+  for (const AxisSetting& setting : context.axis_settings) {
+    if (setting.gain != info.name) continue;
+    any = true;
+    const auto axis = find_axis(context, setting, use);
+    if (!axis) continue;
+    const auto value = core::read_quantity(setting.value, info.dimension, context.diagnostics);
+    if (!value) continue;
+    values[*axis] = *value;
+    check_values(context, setting.value, info, {*value});
+  }
+  return any;
+}
+
 void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
   Behavior& behavior = context.behavior;
   entry.made = true;
@@ -107,14 +152,17 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
     const core::YamlNode* node = entry.node->find(kGainNames[k]);
     if (node == nullptr) continue;
     entry.computed[k] = is_computed(*node);
-    if (entry.computed[k]) continue;
-    const auto values = read_values(context, *node, kDimensions[k], use);
-    if (!values || values->empty()) continue;
     ParameterInfo info;
     info.name = entry.name + "." + kGainNames[k];
+    info.dimension = kDimensions[k];
+    if (entry.computed[k]) {
+      refuse_axis_settings(context, info);
+      continue;
+    }
+    auto values = read_values(context, *node, kDimensions[k], use);
+    if (!values || values->empty()) continue;
     info.slot = static_cast<int>(behavior.values.size());
     info.size = static_cast<int>(values->size());
-    info.dimension = kDimensions[k];
     info.gain = true;
     info.axes = use.names;
     info.mark = node->mark;
@@ -124,6 +172,7 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
       info.live = true;
     }
     check_values(context, *node, info, *values);
+    entry.by_axis[k] = apply_axis_settings(context, info, use, *values);
     entry.slots[k] = info.slot;
     entry.sizes[k] = info.size;
     behavior.parameters.push_back(info);
@@ -235,7 +284,7 @@ void use_gain(LoadContext& context, const GainSource& source, std::size_t gain,
     return;
   }
   if (entry.slots[gain] < 0) return;
-  if (!node.is_scalar() && entry.axes != axes.names) {
+  if ((!node.is_scalar() || entry.by_axis[gain]) && entry.axes != axes.names) {
     context.error(
         node.mark, "size",
         fmt::format("{} serves a task with other axes too: write one number", entry.name));

@@ -176,7 +176,7 @@ TEST_F(Workshop, OneBitOfOneGainIsFound) {
   const lab::ReplayReport report = lab::verify_replay(log, replay);
   ASSERT_EQ(report.parameters.size(), 1U);
   EXPECT_EQ(report.parameters[0],
-            fmt::format("gains.single.place.kp[1]: {} in the log, {} now", old, other));
+            fmt::format("gains.single.place.kp.y: {} in the log, {} now", old, other));
   EXPECT_GT(report.differs_at, 0);
   // The stack with this gain is in force from there on, and its foot is not quite at rest.
   EXPECT_NE(report.state.find("unload"), std::string::npos) << report.state;

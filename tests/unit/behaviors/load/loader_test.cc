@@ -242,6 +242,36 @@ TEST(Loader, OverridesReachGainsAndPlanners) {
       b->parameters[static_cast<std::size_t>(b->find_parameter("gains.single.swing.kp"))];
   EXPECT_EQ(b->values[static_cast<std::size_t>(info.slot + 1)], 200.0);
 }
+TEST(Loader, AnOverrideReachesOneAxisOfAGainByNameOrNumber) {
+  auto options = options_for_tests();
+  options.set = {{"gains.single.swing.kp.y", "111"},
+                 {"gains.dual.attitude.kp[0]", "222"},
+                 {"gains.single.height.kp.z", "333"},
+                 {"goal[1]", "0.4 m"}};
+  core::Diagnostics diagnostics;
+  const auto b = behaviors::load_behavior(balance_path(), options, diagnostics);
+  ASSERT_TRUE(b) << diagnostics.to_string();
+  const auto value = [&](const char* name) {
+    const auto part = b->find_parameter_part(name);
+    const auto& info = b->parameters[static_cast<std::size_t>(part.parameter)];
+    return b->values[static_cast<std::size_t>(info.slot + std::max(part.component, 0))];
+  };
+  EXPECT_EQ(value("gains.single.swing.kp.x"), 220.0);  // as in the file
+  EXPECT_EQ(value("gains.single.swing.kp.y"), 111.0);
+  EXPECT_EQ(value("gains.dual.attitude.kp.pitch"), 222.0);
+  EXPECT_EQ(value("gains.single.height.kp"), 333.0);
+  EXPECT_EQ(value("goal.y"), 0.4);
+  options.set = {{"gains.dual.attitude.kp.pich", "9"}, {"gains.dual.attitude.kp.roll", "9000"}};
+  core::Diagnostics problems;
+  EXPECT_FALSE(behaviors::load_behavior(balance_path(), options, problems));
+  const std::string text = problems.to_string();
+  EXPECT_NE(text.find("--set gains.dual.attitude.kp.pich: gains.dual.attitude.kp has no axis "
+                      "'pich' (did you mean 'pitch'?)\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("error: '9000' is outside gains.ranges, 5 to 800\n"), std::string::npos)
+      << text;
+}
 TEST(Loader, AnOverriddenGainMustStayInsideItsRange) {
   auto options = options_for_tests();
   options.set = {{"gains.single.swing.kp", "[100, 200, 3000]"}, {"gains.singel.swing.kp", "1"}};
