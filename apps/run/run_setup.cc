@@ -17,6 +17,7 @@
 #include "core/text/printable.h"
 #include "core/text/search_folders.h"
 #include "hal/backends/stub.h"
+#include "lab/process/pool.h"
 #include "lab/run/run_log.h"
 #include "model/mjcf.h"
 
@@ -194,19 +195,26 @@ std::unique_ptr<engine::LcmLink> attach_link(const RunOptions& options, engine::
 
 namespace {
 
-// The command line, stored in the log.
+// The command line, stored in the log: what the run depends on.
 std::string command_line(const RunOptions& options) {
-  std::string text = "run " + options.behavior;
+  std::vector<std::string> words = {"run", options.behavior};
   const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) text += fmt::format(" {} {}", name, value);
+    if (!value.empty()) words.insert(words.end(), {name, value});
   };
   add("--robot", options.robot);
+  if (options.backend != "mujoco") add("--backend", options.backend);
   add("--world", options.world);
+  add("--variation", options.variation);
+  add("--seed", std::to_string(options.seed));
+  add("--for", options.duration_text);
+  if (options.steps > 0) add("--steps", std::to_string(options.steps));
   for (const std::string& set : options.set) add("--set", set);
-  for (const std::string& push : options.pushes) add("--push", '"' + push + '"');
+  for (const std::string& push : options.pushes) add("--push", push);
   add("--goal", options.goal);
   add("--goal-velocity", options.goal_velocity);
-  return text;
+  for (const std::string& access : options.allow) add("--allow", access);
+  if (options.realtime) words.emplace_back("--realtime");
+  return lab::shell_line(words);
 }
 
 }  // namespace

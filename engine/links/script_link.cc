@@ -64,12 +64,13 @@ ScriptLink::~ScriptLink() {
   side_->stop.store(true);
   side_->posted.fetch_add(1);  // wakes the thread; it sees `stop` first
   side_->posted.notify_all();
-  if (given_up_) return;
+  if (let_go_) return;
   // The thread ends with the call that is under way.
   if (!wait_for([this] { return side_->ended.load(); })) give_up();
 }
 
 void ScriptLink::deliver(behaviors::Machine& machine) noexcept {
+  if (given_up_) return;
   const std::uint32_t answered = side_->answered.load(std::memory_order_acquire);
   const std::uint32_t begun = side_->begun.load(std::memory_order_relaxed);
   if (answered != delivered_ || begun != begun_) unanswered_ = 0;
@@ -108,10 +109,14 @@ bool ScriptLink::stuck(double period) noexcept {
   if (delivered_ == side_->posted.load(std::memory_order_relaxed)) return false;
   const double waited = static_cast<double>(unanswered_) * period;
   if (waited <= limits_.cpu) return false;  // it cannot have used more
-  if (waited > limits_.wall) return true;
-  // In this order: a call that begins in between has used nothing.
-  const double used = thread_.cpu_time();
-  return used - side_->used_before.load(std::memory_order_acquire) > limits_.cpu;
+  if (waited <= limits_.wall) {
+    // In this order: a call that begins in between has used nothing.
+    const double used = thread_.cpu_time();
+    if (used - side_->used_before.load(std::memory_order_acquire) <= limits_.cpu) return false;
+  }
+  given_up_ = true;
+  side_->stop.store(true);  // if the call comes back after all, the thread ends with it
+  return true;
 }
 
 void ScriptLink::wait() noexcept {
@@ -127,7 +132,7 @@ bool ScriptLink::wait_for(const std::function<bool()>& done) noexcept {
 }
 
 void ScriptLink::give_up() noexcept {
-  given_up_ = true;
+  given_up_ = let_go_ = true;
   side_->script->stop();
   thread_.let_go();
 }
@@ -176,7 +181,7 @@ void ScriptLink::Side::answer(Batch& batch) {
   const ScriptView view{behavior, batch.signals.data(), batch.parameters.data(),
                         batch.active.data(), batch.time};
   ScriptAnswer answer;
-  for (std::size_t k = 0; k < batch.request_count && !script->stopped(); ++k) {
+  for (std::size_t k = 0; k < batch.request_count && !script->stopped() && !stop; ++k) {
     const auto index = static_cast<std::size_t>(batch.requests[k].index);
     begin_call();
     if (batch.requests[k].is_event) {

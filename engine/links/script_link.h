@@ -38,10 +38,10 @@ class ScriptLink {
   void deliver(behaviors::Machine& machine) noexcept;
   // Posts this tick's requests; false: some were dropped.
   bool post(const behaviors::Machine& machine, const double* signals, double time) noexcept;
-  // After post(), with s of a tick: whether the scripts were given up, or should be. The call under
+  // After post(), with s of a tick: whether the scripts were given up. They are if the call under
   // way has used its processor time (behaviors::watch_limits()), or has blocked for the bound in
-  // wall time, counted in ticks. Reads a clock only once as many ticks as its processor time have
-  // gone by.
+  // wall time, counted in ticks: no script runs any more. Reads a clock only once as many ticks as
+  // its processor time have gone by.
   bool stuck(double period) noexcept;
 
   // Outside of the tick. Waits until everything posted is answered (lock-step), or gives up.
@@ -104,6 +104,7 @@ class ScriptLink {
   std::uint32_t begun_ = 0;      // calls, as seen by the last tick
   std::int64_t unanswered_ = 0;  // ticks since the last answer or call, while answers are missing
   std::atomic<bool> given_up_{false};
+  bool let_go_ = false;  // its thread, which may never end
   bool told_given_up_ = false;
   core::WatchLimits limits_;  // of a call
   core::WatchedThread thread_;
