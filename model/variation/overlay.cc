@@ -32,6 +32,15 @@ YamlNode each_off(const YamlNode& off, const KeyTable& table) {
   return map;
 }
 
+// `com: off` of all links, under the links that are named over it.
+YamlNode other_links_off(const YamlNode& off) {
+  YamlNode map;
+  map.kind = YamlNode::Kind::map;
+  map.mark = off.mark;
+  map.entries.push_back({std::string(kOtherLinks), off.mark, false, off});
+  return map;
+}
+
 const KeyTable* table_below(std::string_view key) {
   if (key == "start") return &kVariedStartKeys;
   if (key == "control_model") return &kVariedModelKeys;
@@ -47,6 +56,8 @@ void prepare(YamlNode& base, const YamlNode& own, const KeyTable* table) {
     if (below == nullptr) continue;
     if (is_off(entry.value)) {
       erase(base, entry.key);
+    } else if (table == &kVariedModelKeys && entry.key == "com" && is_off(*below)) {
+      *below = other_links_off(*below);
     } else {
       prepare(*below, entry.value, table == &kVariationKeys ? table_below(entry.key) : nullptr);
     }

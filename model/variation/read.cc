@@ -107,6 +107,13 @@ class Reader {
     return out;
   }
 
+  void refuse_normal(const YamlNode& map, const char* name, Spread& out, const char* why) {
+    const YamlNode* const node = map.find(name);
+    if (node == nullptr || out.kind != Spread::Kind::normal) return;
+    diagnostics_.error(node->mark, "out-of-range", why);
+    out = {};
+  }
+
   static bool is_off(const YamlNode& node) {
     return node.is_scalar() && !node.quoted && node.scalar == "off";
   }
@@ -137,7 +144,10 @@ class Reader {
     if (is_off(*com)) {
       clear_com(out);
     } else if (expect_map(*com, "a map by link", diagnostics_)) {
+      const YamlNode* const others = com->find(kOtherLinks);
+      if (others != nullptr && is_off(*others)) clear_com(out);
       for (const YamlEntry& entry : com->entries) {
+        if (&entry.value == others && is_off(*others)) continue;
         out.com[entry.key] = read(entry.value, kLength, -1.0, 1.0);
         out.links.push_back(named_link(entry, diagnostics_));
       }
@@ -198,20 +208,12 @@ Variation read_variation(const YamlNode& node, const Variation& base, Diagnostic
   Reader reader(diagnostics);
   if (const YamlNode* start = node.find("start")) reader.start(*start, out);
   reader.spread(node, "friction", kNone, 0.0, 10.0, out.friction);
-  const YamlNode* friction = node.find("friction");
-  if (friction != nullptr && out.friction.kind == Spread::Kind::normal) {
-    diagnostics.error(friction->mark, "out-of-range",
-                      "a friction is no difference from 0: expected {range: [0.6, 1]}");
-    out.friction = {};
-  }
+  reader.refuse_normal(node, "friction", out.friction,
+                       "a friction is no difference from 0: expected {range: [0.6, 1]}");
   if (const YamlNode* model = node.find("control_model")) reader.control_model(*model, out);
   reader.spread(node, "command_delay", kTime, 0.0, 0.02, out.command_delay);
-  const YamlNode* delay = node.find("command_delay");
-  if (delay != nullptr && out.command_delay.kind == Spread::Kind::normal) {
-    diagnostics.error(delay->mark, "out-of-range",
-                      "a delay cannot be negative: expected {range: [0 s, 667 us]}");
-    out.command_delay = {};
-  }
+  reader.refuse_normal(node, "command_delay", out.command_delay,
+                       "a delay cannot be negative: expected {range: [0 s, 667 us]}");
   if (const YamlNode* push = node.find("push")) reader.push(*push, out);
   return out;
 }

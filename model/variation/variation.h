@@ -36,6 +36,9 @@ struct PushSpread {
 };
 
 // A link that a file names, and where.
+// In `com: {"*": off}`: the links that are not named draw nothing.
+inline constexpr std::string_view kOtherLinks = "*";
+
 struct NamedLink {
   std::string name;
   std::string file;

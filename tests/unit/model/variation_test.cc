@@ -214,6 +214,18 @@ TEST(Variation, OneDrawMayBeSetAgainOverOff) {
   EXPECT_EQ(drawn.values.size(), 1u);
 }
 
+TEST(Variation, ALinkSetAgainOverOffLeavesTheOthersOff) {
+  const Variation world = read("control_model: {com: {torso: {sd: 5 mm}, shank: {sd: 2 mm}}}");
+  for (const std::string base : {"variation: off", "variation: {control_model: off}",
+                                 "variation: {control_model: {com: off}}"}) {
+    const Variation v =
+        read_merged(base, "variation: {control_model: {com: {torso: 1 mm}}}", world);
+    EXPECT_EQ(v.com.size(), 1u) << base;
+    EXPECT_EQ(v.com.at("torso").a, 1e-3);
+    EXPECT_EQ(v.links.size(), 1u);
+  }
+}
+
 TEST(Variation, OneKindOfDistributionReplacesTheOther) {
   const std::string base =
       "variation: {start: {joints: {sd: 0.3 deg}}, friction: {range: [0.6, 1]}}";
