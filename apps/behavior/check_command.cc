@@ -83,9 +83,9 @@ void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
 behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
                                        core::Diagnostics& diagnostics) {
   if (scenario.world.empty()) return {};
-  const std::filesystem::path folder = std::filesystem::path(scenario.path).parent_path();
+  const std::filesystem::path folder = std::filesystem::path(scenario.world_from).parent_path();
   const std::string beside = sim::find_world_file((folder / scenario.world).string(), {});
-  const std::vector<std::string> folders = core::search_from(scenario.path, search_path());
+  const std::vector<std::string> folders = core::search_from(scenario.world_from, search_path());
   const std::string path = beside.empty() ? sim::find_world_file(scenario.world, folders) : beside;
   if (!path.empty()) {
     sim::WorldDescription world = sim::load_world(path, diagnostics);

@@ -46,8 +46,8 @@ CheckedScenario load_checked(const RunOptions& options) {
   if (!scenario.behavior->has_robot) {
     throw InputError(options.behavior + ": error: its behavior has no `robot:` and cannot be run");
   }
-  sim::WorldDescription world =
-      load_world(scenario.world, scenario.path, lab::place_in_file(scenario, scenario.world_mark));
+  sim::WorldDescription world = load_world(scenario.world, scenario.world_from,
+                                           lab::place_in_file(scenario, scenario.world_mark));
   world.variation = lab::variation_over(scenario, world.variation);
   world = declared_world(options, std::move(world));
   check_links_of(world, scenario.behavior->robot);

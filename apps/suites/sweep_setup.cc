@@ -45,14 +45,14 @@ void name_default_world(lab::SweepDescription& sweep, core::Diagnostics& diagnos
   sweep.world_marks = {core::Mark{}};
   if (sweep.scenario.empty()) return;
   const auto scenario = lab::load_scenario(sweep.scenario, {search_path()}, diagnostics);
-  if (!scenario.world.empty()) sweep.worlds = {find_world(scenario.path, scenario.world)};
+  if (!scenario.world.empty()) sweep.worlds = {find_world(scenario.world_from, scenario.world)};
 }
 
 // A scenario's own world is loaded by its runs: whether they can is told before the first of them.
 void check_scenario_world(const lab::SweepDescription& sweep, core::Diagnostics& diagnostics) {
   if (diagnostics.has_errors() || sweep.scenario.empty() || !sweep.worlds.empty()) return;
   const auto scenario = lab::load_scenario(sweep.scenario, {search_path()}, diagnostics);
-  const std::string path = find_world(scenario.path, scenario.world);
+  const std::string path = find_world(scenario.world_from, scenario.world);
   if (!path.empty()) load_and_check_world(path, scenario, scenario.behavior.get(), diagnostics);
 }
 

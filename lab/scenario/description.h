@@ -102,6 +102,7 @@ struct ScenarioDescription {
   std::string robot;           // name or path as written; empty: the behavior's robot
   std::string world = "flat";  // name or path as written
   core::Mark world_mark;       // line 0 if not written
+  std::string world_from;      // the file that names it, the scenario's or a base's
   // `variation:`, over the world's (model::read_variation); it was read once without problems.
   std::optional<core::YamlNode> variation;
   std::vector<std::uint64_t> seeds{1};

@@ -184,6 +184,7 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
   ScenarioDescription& scenario = context.scenario;
   core::Diagnostics& diagnostics = context.diagnostics;
   scenario.name = fs::path(scenario.path).stem().string();
+  scenario.world_from = scenario.path;
   if (const YamlNode* node = root.find("name")) {
     scenario.name = core::read_name(*node, diagnostics, "the scenario's name").value_or("");
   }
@@ -192,6 +193,7 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
   if (const YamlNode* node = root.find("world")) {
     scenario.world = core::read_text(*node, diagnostics, "the name of a world").value_or("");
     scenario.world_mark = node->mark;
+    if (node->mark.file >= 0) scenario.world_from = diagnostics.file(node->mark.file);
   }
   if (const YamlNode* node = root.find("seeds")) read_seeds(context, *node);
   if (const YamlNode* node = core::require_key(root, "for", diagnostics)) {

@@ -74,6 +74,14 @@ class BadInput(Case):
         result = self.footfall("run", path, "--no-log", "--json")
         self.assertEqual(json.loads(result.stdout.splitlines()[-1])["figures"]["variation"], {}, result.stderr)
 
+    def test_the_world_of_a_base_lies_beside_the_base(self):
+        self.write("low/w.yaml", "world: 1\nground: {friction: 0.5}\n")
+        self.write("low/s.yaml", "scenario: 1\nbehavior: balance_best\nworld: w.yaml\nfor: 50 ms\n")
+        path = self.write("d.yaml", "scenario: 1\nbase: low/s.yaml\n")
+        for command in (["run", path, "--no-log", "--quiet"], ["check", path], ["sweep", path, "--seeds", "1", "--out", str(self.folder / "o")]):
+            result = self.footfall(*command)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
     def test_a_link_that_the_robot_lacks_is_told_where_it_is_named(self):
         for key in ("variation: {control_model: {com: {torsoo: {sd: 5 mm}}}}", "control_model: {com: {torsoo: [1 mm, 0 m, 0 m]}}"):
             self.write("v.yaml", f"world: 1\n{key}\n")
