@@ -78,6 +78,7 @@ void load_contents(LoadContext& context) {
   load_transitions(context);
   load_invokes(context);
   load_control(context);
+  check_gain_settings(context);
   finish_events(context);
   warn_absences(context);
 }

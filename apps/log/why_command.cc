@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <deque>
@@ -47,7 +48,10 @@ int run_why(const WhyArguments& arguments) {
     while (replay.next() < replay.end()) replay.tick({});
     replay.go_on(logs[k]);
   }
-  fmt::print("{}", lab::explain_tick(replay, tick));
+  const auto begun = [tick](const lab::Log& log) { return log.inputs.first_tick <= tick; };
+  const std::string text = lab::explain_tick(replay, tick);
+  const auto log = std::ranges::find_if(logs.rbegin(), logs.rend(), begun);
+  fmt::print("{}{}", text, log == logs.rend() ? "" : lab::faults_until(*log, tick));
   return kGood;
 }
 

@@ -86,7 +86,7 @@ bool active_together(const Chart& chart, int a, int b) {
 }
 
 std::int64_t periods_of(double seconds, std::int64_t rate_mhz) noexcept {
-  if (!(seconds >= 0.0) || seconds > 1e6) return -1;
+  if (!(seconds >= 0.0) || seconds > kLongestTime) return -1;
   const std::int64_t ns = std::llround(seconds * 1e9);  // at most 10^15
   // ns * rate_mhz / 10^12, rounded up, split so that no product overflows 64 bits.
   constexpr std::int64_t kBillion = 1'000'000'000;

@@ -120,7 +120,8 @@ struct Chart {
   std::int64_t rate_mhz = 1'000'000;  // ticks per second, in millihertz
   int micro_steps = 64;               // limit in one tick
   ExpressionPool expressions;
-  std::vector<StateInfo> states;  // [0] is the root
+  std::vector<std::string> expression_places;  // FILE:LINE:COLUMN; empty or absent: unknown
+  std::vector<StateInfo> states;               // [0] is the root
   std::vector<TransitionInfo> transitions;
   std::vector<int> targets;
   std::vector<ActionInfo> actions;
@@ -165,6 +166,8 @@ struct Chart {
 
 // Whether two states can be active at once, and neither contains the other.
 bool active_together(const Chart& chart, int a, int b);
+
+inline constexpr double kLongestTime = 1e6;  // s, of an `after` and the like
 
 // Duration of `seconds` in whole periods: ceil(D * rate) with D rounded to nanoseconds, in integer
 // arithmetic, so that 16 ms at 1500 Hz is always 24. -1 if D is negative, not finite or above 10^6

@@ -174,7 +174,7 @@ struct ExpressionError {
 
 // Compiles `text` (without a leading `=`) and appends it to the pool. `expected` is checked if
 // given; a number without unit adopts the required dimension. Returns -1 and fills `error` on
-// failure.
+// failure; fills it, too, if the text is valid and cannot have a value (`no-value`).
 int compile_expression(std::string_view text, const ExpressionScope& scope,
                        std::optional<core::Dimension> expected, ExpressionPool& pool,
                        ExpressionError& error);

@@ -171,7 +171,11 @@ Operand ExpressionParser::parse_product() {
   while (is("*") || is("/")) {
     const bool times = take().text == "*";
     const Token& at = peek();
+    const std::size_t before = code.size();
     const Operand right = parse_sign();
+    const bool by_zero = !times && code.size() == before + 1 && code.back().op == Op::constant &&
+                         code.back().value == 0.0;
+    if (by_zero) error_ = {at.offset, "no-value", "a division by 0 has no value"};
     left = {combine(left.dimension, right.dimension, times, at), left.bare && right.bare, false,
             0.0};
     emit(times ? Op::multiply : Op::divide);

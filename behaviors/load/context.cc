@@ -80,6 +80,12 @@ int LoadContext::compile(const core::YamlNode& node, std::string_view text, std:
     error(place(problem.offset), problem.id, problem.text);
     return -1;
   }
+  remember_place(index, place(0));
+  const auto value = constant_value(index);
+  if (value && !std::isfinite(*value) && problem.id.empty()) {
+    problem = {0, "no-value", fmt::format("'{}' has no value", marked.text)};
+  }
+  if (!problem.id.empty()) warning(place(problem.offset), problem.id, problem.text);
   for (const int sign : stray_signs(marked.text)) {
     warning(place(sign), "stray-sign",
             fmt::format("a '{}' that stands alone: is a value missing before it? Write signs close "
@@ -109,10 +115,19 @@ int LoadContext::compile_value(const core::YamlNode& node, std::optional<core::D
   if (first == '$' || (name && plain)) return compile(node, node.scalar, 0, expected, scope);
   if (!expected) {
     const auto any = core::read_any_quantity(node, diagnostics);
-    return any ? behavior.expressions.add_constant(any->value, any->dimension) : -1;
+    if (!any) return -1;
+    return remember_place(behavior.expressions.add_constant(any->value, any->dimension), node.mark);
   }
   const auto value = core::read_quantity(node, *expected, diagnostics);
-  return value ? behavior.expressions.add_constant(*value, *expected) : -1;
+  if (!value) return -1;
+  return remember_place(behavior.expressions.add_constant(*value, *expected), node.mark);
+}
+
+int LoadContext::remember_place(int expression, core::Mark mark) {
+  auto& places = behavior.expression_places;
+  places.resize(std::max(places.size(), static_cast<std::size_t>(expression) + 1));
+  places[static_cast<std::size_t>(expression)] = diagnostics.place_text(mark);
+  return expression;
 }
 
 int LoadContext::compile_condition(const core::YamlNode& node, const ValueScope& scope) {

@@ -51,11 +51,12 @@ struct GainEntry {
   bool overlaid = false;  // used by some task, possibly below an inner layer's
 };
 
-// `--set gains.TABLE.TASK.kp.AXIS=VALUE`: waits until the axes of the task are known.
-struct AxisSetting {
+// `--set gains.TABLE.TASK.kp.AXIS=VALUE`, or of gains written in a task: waits until the task and
+// its axes are known.
+struct GainSetting {
   std::string name;  // as given
   std::string gain;  // `gains.TABLE.TASK.kp`
-  std::string axis;  // its name, or its number
+  std::string axis;  // its name, or its number; empty: all
   core::YamlNode value;
 };
 
@@ -85,7 +86,7 @@ struct LoadContext {
   std::vector<const StateSource*> sources;                          // by state index
   std::map<std::string, GainEntry> gain_entries;                    // by name; stable addresses
   std::array<std::optional<std::array<double, 2>>, 3> gain_ranges;  // kp, ki, kd
-  std::vector<AxisSetting> axis_settings;                           // of --set, in order
+  std::vector<GainSetting> gain_settings;                           // of --set, in order
   std::deque<core::YamlNode> substituted;  // stacks with arguments put in; stable addresses
   std::map<std::pair<std::string, int>, const core::YamlNode*> stack_cache;  // (name, state)
   std::vector<std::string> used_templates, used_stacks, used_torque_loops;
@@ -124,6 +125,8 @@ struct LoadContext {
   // column.
   int compile(const core::YamlNode& node, std::string_view text, std::size_t offset,
               std::optional<core::Dimension> expected, const ValueScope& scope);
+  // Stores where an expression stands, for messages at run time; returns it.
+  int remember_place(int expression, core::Mark mark);
   // Compiles a scalar value: a quantity, `$parameter`, `= expression`, or a single signal name; of
   // any dimension without `expected`.
   int compile_value(const core::YamlNode& node, std::optional<core::Dimension> expected,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <span>
 
 #include "behaviors/load/context.h"
 #include "behaviors/load/steps.h"
@@ -34,19 +35,31 @@ void put_or_replace(core::YamlNode& map, const std::string& key, core::YamlNode 
   }
 }
 
-// The map that `parts` (without the last one) leads to, nullptr and an error otherwise.
-core::YamlNode* walk(LoadContext& context, core::YamlNode& start, const std::string& name,
-                     const std::vector<std::string>& parts, core::Mark mark) {
+// What `parts` lead to; nullptr if there is nothing.
+core::YamlNode* look(core::YamlNode& start, std::span<const std::string> parts) {
   core::YamlNode* node = &start;
-  for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
-    core::YamlNode* next = node->is_map() ? child(*node, parts[k]) : nullptr;
-    if (next == nullptr || !next->is_map()) {
-      context.error(mark, "unknown-setting",
-                    fmt::format("--set {}: there is no '{}'{}", name, parts[k],
-                                core::did_you_mean(parts[k], keys_of(*node))));
-      return nullptr;
+  for (const std::string& part : parts) {
+    node = node->is_map() ? child(*node, part) : nullptr;
+    if (node == nullptr) break;
+  }
+  return node;
+}
+
+// The map that `parts` lead to, nullptr and an error otherwise.
+core::YamlNode* require_map(LoadContext& context, const std::string& name,
+                            std::span<const std::string> parts, core::Mark mark) {
+  core::YamlNode* node = &context.root;
+  for (const std::string& part : parts) {
+    core::YamlNode* const next = child(*node, part);
+    if (next != nullptr && next->is_map()) {
+      node = next;
+      continue;
     }
-    node = next;
+    const std::string why = next != nullptr ? fmt::format("'{}' has no parts of this kind", part)
+                                            : fmt::format("there is no '{}'{}", part,
+                                                          core::did_you_mean(part, keys_of(*node)));
+    context.error(mark, "unknown-setting", fmt::format("--set {}: {}", name, why));
+    return nullptr;
   }
   return node;
 }
@@ -76,19 +89,23 @@ std::array<std::string, 2> split_part(const std::string& name) {
   return {name.substr(0, end), name.substr(end + 1, name.size() - end - (numbered ? 2 : 1))};
 }
 
-// `goal.x`: one value of a parameter that is a list; nullptr if there is none.
-core::YamlNode* component(core::YamlNode& parameters, const std::string& name) {
+// The value `x` or `1` of a list; nullptr if there is none.
+core::YamlNode* item_of(core::YamlNode* list, const std::string& part) {
   constexpr std::string_view kAxes = "xyz";
+  if (list == nullptr || !list->is_sequence()) return nullptr;
+  std::size_t index = part.size() == 1 ? kAxes.find(part) : std::string_view::npos;
+  const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+  const bool number = error == std::errc() && stop == part.data() + part.size();
+  if (!number && index == std::string_view::npos) return nullptr;
+  return index < list->items.size() ? &list->items[index] : nullptr;
+}
+
+// `goal.x`, `goal[0]`: one value of a parameter that is a list; nullptr if there is none.
+core::YamlNode* component(core::YamlNode& parameters, const std::string& name) {
   const auto [whole, part] = split_part(name);
   core::YamlNode* list = part.empty() ? nullptr : child(parameters, whole);
   if (list != nullptr && list->is_map()) list = child(*list, "value");
-  if (list == nullptr || !list->is_sequence()) return nullptr;
-  std::size_t index = part.size() == 1 ? kAxes.find(part) : std::string_view::npos;
-  if (name.ends_with(']')) {
-    const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-    if (error != std::errc() || stop != part.data() + part.size()) return nullptr;
-  }
-  return index < list->items.size() ? &list->items[index] : nullptr;
+  return item_of(list, part);
 }
 
 void set_parameter(LoadContext& context, const std::string& name, core::YamlNode value) {
@@ -125,22 +142,37 @@ void set_gain(LoadContext& context, const std::string& name, core::YamlNode valu
     gain = whole, axis = part;
   }
   const std::vector<std::string> parts = core::split_dots(gain);
-  core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
-  if (map == nullptr) return;
   if (parts.size() != 4 || !is_gain(parts.back())) {
     context.error(value.mark, "unknown-setting",
                   fmt::format("--set {}: expected gains.TABLE.TASK.kp, ki or kd, or one axis of "
                               "it, gains.TABLE.TASK.kp.AXIS",
                               name));
-  } else if (axis.empty()) {
-    put_or_replace(*map, parts.back(), std::move(value));
-    std::erase_if(context.axis_settings, [&](const AxisSetting& s) { return s.gain == gain; });
-  } else if (child(*map, parts.back()) == nullptr) {
+    return;
+  }
+  core::YamlNode* const table = look(context.root, std::span(parts).first(3));
+  if (table == nullptr || !table->is_map() || !axis.empty()) {
+    context.gain_settings.push_back({name, gain, axis, std::move(value)});
+    return;
+  }
+  put_or_replace(*table, parts.back(), std::move(value));
+  std::erase_if(context.gain_settings, [&](const GainSetting& s) { return s.gain == gain; });
+}
+
+// `planners.foot.kappa`, or one value of a list, `.reversal.x` and `.reversal[0]`.
+void set_planner(LoadContext& context, const std::string& name, core::YamlNode value) {
+  const std::vector<std::string> parts = core::split_dots(name);
+  const auto [whole, part] = split_part(name);
+  const std::vector<std::string> outer = core::split_dots(whole);
+  if (core::YamlNode* const item = item_of(look(context.root, outer), part)) {
+    *item = std::move(value);
+  } else if (parts.size() != 3) {
     context.error(value.mark, "unknown-setting",
-                  fmt::format("--set {}: there is no '{}'{}", name, parts.back(),
-                              core::did_you_mean(parts.back(), keys_of(*map))));
-  } else {
-    context.axis_settings.push_back({name, gain, axis, std::move(value)});
+                  fmt::format("--set {}: expected planners.NAME.KEY, or one value of a list, "
+                              "planners.NAME.KEY.x",
+                              name));
+  } else if (core::YamlNode* const map =
+                 require_map(context, name, std::span(parts).first(2), value.mark)) {
+    put_or_replace(*map, parts.back(), std::move(value));
   }
 }
 
@@ -155,12 +187,7 @@ void apply(LoadContext& context, const std::string& name, const std::string& tex
   if (parts[0] == "gains") {
     set_gain(context, name, std::move(value));
   } else if (parts[0] == "planners") {
-    core::YamlNode* map = walk(context, context.root, name, parts, value.mark);
-    if (map != nullptr && parts.size() >= 3) put_or_replace(*map, parts.back(), std::move(value));
-    if (map != nullptr && parts.size() < 3) {
-      context.error(value.mark, "unknown-setting",
-                    fmt::format("--set {}: expected planners.NAME.KEY", name));
-    }
+    set_planner(context, name, std::move(value));
   } else {
     set_parameter(context, name, std::move(value));
   }

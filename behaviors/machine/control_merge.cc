@@ -260,7 +260,9 @@ double ControlMerge::checked_gain(const AxisSpec& axis, int slot, std::size_t ga
   const double value = value_or(axis.computed[gain], before, bank, entry);
   const std::array<double, 2>& limits = behavior_.gain_limits[gain];
   if (value >= limits[0] && value <= limits[1]) return value;
-  if (!bank.reported) statechart_.report_execution_error();
+  if (!bank.reported) {
+    statechart_.report_execution_error(bad_value(axis.computed[gain], value, limits[0], limits[1]));
+  }
   bank.reported = true;
   return std::clamp(before, limits[0], limits[1]);
 }
@@ -272,7 +274,7 @@ double ControlMerge::value_or(int expression, double fallback, Bank& bank,
   context.entry = entry;
   const double value = evaluate(behavior_.expressions, expression, context);
   if (std::isfinite(value)) return value;
-  if (!bank.reported) statechart_.report_execution_error();
+  if (!bank.reported) statechart_.report_execution_error(bad_value(expression, value));
   bank.reported = true;
   return fallback;
 }

@@ -212,6 +212,9 @@ std::int64_t Machine::deadline(int transition) const noexcept {
 const EvaluationContext& Machine::context() const noexcept { return impl_->statechart.context(); }
 std::size_t Machine::outside_room() const noexcept { return impl_->outside.room(); }
 bool Machine::is_active(int state) const noexcept { return impl_->statechart.is_active(state); }
+const ExecutionProblem& Machine::execution_problem() const noexcept {
+  return impl_->statechart.execution_problem();
+}
 const core::FaultCounters& Machine::faults() const noexcept { return impl_->statechart.faults(); }
 
 }  // namespace footfall::behaviors

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "behaviors/compiled/behavior.h"
+#include "behaviors/statechart/execution_problem.h"
 #include "behaviors/statechart/statechart.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
@@ -116,6 +117,8 @@ class Machine {
   // Current inputs of expressions over states, parameters and time.
   const EvaluationContext& context() const noexcept;
   const core::FaultCounters& faults() const noexcept;
+  // Why error.execution was raised: the first problem of the last tick that had one.
+  const ExecutionProblem& execution_problem() const noexcept;
 
  private:
   struct Impl;

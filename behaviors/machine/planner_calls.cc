@@ -175,7 +175,7 @@ void PlannerCalls::ask(const InvokeInfo& invoke, Call& call) noexcept {
   const EvaluationContext& context = statechart_.context();
   const double switch_in = evaluate(behavior_.expressions, invoke.switch_in, context);
   if (!std::isfinite(switch_in)) {
-    statechart_.report_execution_error();
+    statechart_.report_execution_error(bad_value(invoke.switch_in, switch_in));
     return;
   }
   if (at(call.count) == call.ring.size()) call.drop(1);  // unanswered for one second
@@ -251,7 +251,7 @@ std::int64_t PlannerCalls::ticks_of(int expression, double factor) noexcept {
   const double seconds =
       factor * evaluate(behavior_.expressions, expression, statechart_.context());
   const std::int64_t ticks = periods_of(seconds, behavior_.rate_mhz);
-  if (ticks < 0) statechart_.report_execution_error();
+  if (ticks < 0) statechart_.report_execution_error(no_time(expression, seconds));
   return ticks;
 }
 

@@ -75,7 +75,8 @@ void ControlMerge::start_axis(Bank& bank, const tasks::TaskCommand& command, con
       const double period = value_or(reference.period, 0.0, bank, entry);
       state.ramp = value_or(reference.ramp, period, bank, entry);
       if (!(state.ramp > 0.0)) {
-        statechart_.report_execution_error();
+        const int ramp = reference.ramp >= 0 ? reference.ramp : reference.period;
+        statechart_.report_execution_error(no_time(ramp, state.ramp));
         state.ramp = context.period;
       }
       // Without a goal the centre is the position at entry; an initial velocity decays while the
@@ -119,7 +120,8 @@ void ControlMerge::start_waypoints(Bank& bank, const tasks::TaskCommand& command
     time = point.after_previous ? time + when : when;
     if (point.to[at(k)] < 0) continue;
     if (!(time > knots[count - 1].time)) {
-      statechart_.report_execution_error();
+      const int place = point.at >= 0 ? point.at : spec.reference.over;
+      statechart_.report_execution_error({ExecutionProblem::Kind::order, place, time});
       if (count == 1) continue;
       --count;
     }

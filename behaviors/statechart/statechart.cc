@@ -92,7 +92,9 @@ void Statechart::raise_internal(int event) noexcept {
   faults_.add(core::Fault::event_overflow);
 }
 
-void Statechart::execution_error() noexcept {
+void Statechart::execution_error(const ExecutionProblem& problem) noexcept {
+  if (problem_tick_ != context_.tick) problem_ = problem;
+  problem_tick_ = context_.tick;
   faults_.add(core::Fault::execution);
   raise_internal(chart_.error_execution);
 }
@@ -117,7 +119,7 @@ void Statechart::run() noexcept {
       if (selected_.empty()) take_event(*queue);  // an event that enables no transition is dropped
     }
     if (steps_++ >= chart_.micro_steps) {  // the rest is postponed to the next tick
-      execution_error();
+      execution_error({ExecutionProblem::Kind::micro_steps});
       return;
     }
     if (queue != nullptr) take_event(*queue);
@@ -204,10 +206,11 @@ void Statechart::enter_state(int s) noexcept {
   for (int k = timers.first; k < timers.end(); ++k) {
     const std::size_t t = idx(index_.timers[idx(k)]);
     timer_taken_[t] = 0;
-    const double seconds = evaluate(chart_.expressions, chart_.transitions[t].after, context_);
+    const int after = chart_.transitions[t].after;
+    const double seconds = evaluate(chart_.expressions, after, context_);
     const std::int64_t periods = periods_of(seconds, chart_.rate_mhz);
     deadlines_[t] = periods < 0 ? -1 : context_.tick + periods;
-    if (periods < 0) execution_error();
+    if (periods < 0) execution_error(no_time(after, seconds));
   }
   if (info.kind == StateKind::final) after_final(s);
 }
@@ -259,54 +262,64 @@ void Statechart::refresh_lists() noexcept {
 
 void Statechart::run_actions(Range actions) noexcept {
   for (int k = actions.first; k < actions.end(); ++k) {
-    if (run_action(chart_.actions[idx(k)])) continue;
-    execution_error();
+    const ExecutionProblem problem = run_action(chart_.actions[idx(k)]);
+    if (problem.kind == ExecutionProblem::Kind::none) continue;
+    execution_error(problem);
     return;  // skip the rest of the list
   }
 }
 
-bool Statechart::run_action(const ActionInfo& action) noexcept {
+ExecutionProblem Statechart::run_action(const ActionInfo& action) noexcept {
   switch (action.kind) {
     case ActionKind::raise:
       raise_internal(action.index);
-      return true;
+      break;
     case ActionKind::mark:
       if (marks_.size() < kRecordCapacity) marks_.push_back(action.index);
-      return true;
-    case ActionKind::set: {
-      const double value = evaluate(chart_.expressions, action.expression, context_);
-      const bool inside = action.min >= action.max || (value >= action.min && value <= action.max);
-      if (!std::isfinite(value) || !inside) return false;
-      parameters_[idx(action.index)] = value;
-      return true;
-    }
-    case ActionKind::log: {
-      if (logs_.size() == kRecordCapacity) return true;
-      LogRecord record{action.index, {}};
-      const LogText& text = chart_.logs[idx(action.index)];
-      for (std::size_t k = 0; k < text.expressions.size(); ++k) {
-        record.values[k] = evaluate(chart_.expressions, text.expressions[k], context_);
-        if (!std::isfinite(record.values[k])) return false;
-      }
-      logs_.push_back(record);
-      return true;
-    }
+      break;
+    case ActionKind::set:
+      return run_set(action);
+    case ActionKind::log:
+      return run_log(action);
     case ActionKind::call:
       return call(action.index);
   }
-  return true;
+  return {};
 }
 
-bool Statechart::call(int index) noexcept {
+ExecutionProblem Statechart::run_set(const ActionInfo& action) noexcept {
+  const double value = evaluate(chart_.expressions, action.expression, context_);
+  const bool inside = action.min >= action.max || (value >= action.min && value <= action.max);
+  if (!std::isfinite(value) || !inside) {
+    return bad_value(action.expression, value, action.min, action.max);
+  }
+  parameters_[idx(action.index)] = value;
+  return {};
+}
+
+ExecutionProblem Statechart::run_log(const ActionInfo& action) noexcept {
+  if (logs_.size() == kRecordCapacity) return {};
+  LogRecord record{action.index, {}};
+  const LogText& text = chart_.logs[idx(action.index)];
+  for (std::size_t k = 0; k < text.expressions.size(); ++k) {
+    record.values[k] = evaluate(chart_.expressions, text.expressions[k], context_);
+    if (!std::isfinite(record.values[k])) return bad_value(text.expressions[k], record.values[k]);
+  }
+  logs_.push_back(record);
+  return {};
+}
+
+ExecutionProblem Statechart::call(int index) noexcept {
   const CallInfo& info = chart_.calls[idx(index)];
   if (info.native != nullptr) {
     NativeCall native{context_.signals, parameters_,
                       static_cast<double>(context_.tick) * context_.period};
-    return info.native(native);
+    if (info.native(native)) return {};
+    return {ExecutionProblem::Kind::call, index};
   }
-  if (script_requests_.size() == kRecordCapacity) return false;
+  if (script_requests_.size() == kRecordCapacity) return {ExecutionProblem::Kind::requests, index};
   script_requests_.push_back({false, index});
-  return true;
+  return {};
 }
 
 }  // namespace footfall::behaviors

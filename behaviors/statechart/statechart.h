@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "behaviors/compiled/chart.h"
+#include "behaviors/statechart/execution_problem.h"
 #include "behaviors/statechart/index.h"
 #include "core/fault.h"
 
@@ -97,8 +98,13 @@ class Statechart {
   std::span<const ScriptRequest> script_requests() const noexcept { return script_requests_; }
   const core::FaultCounters& faults() const noexcept { return faults_; }
   void count_fault(core::Fault fault) noexcept { faults_.add(fault); }
-  // Raises error.execution as an internal event of the next tick.
-  void report_execution_error() noexcept { execution_error(); }
+  // Raises error.execution as an internal event of the next tick. The first problem of a tick is
+  // kept.
+  void report_execution_error(const ExecutionProblem& problem) noexcept {
+    execution_error(problem);
+  }
+  // The first problem of the last tick that had one.
+  const ExecutionProblem& execution_problem() const noexcept { return problem_; }
   const EvaluationContext& context() const noexcept { return context_; }
 
  private:
@@ -124,11 +130,14 @@ class Statechart {
   bool in_final(int s) const noexcept;
   void refresh_lists() noexcept;
   void run_actions(Range actions) noexcept;
-  bool run_action(const ActionInfo& action) noexcept;
-  bool call(int index) noexcept;
+  // A problem of the kind `none`: done.
+  ExecutionProblem run_action(const ActionInfo& action) noexcept;
+  ExecutionProblem run_set(const ActionInfo& action) noexcept;
+  ExecutionProblem run_log(const ActionInfo& action) noexcept;
+  ExecutionProblem call(int index) noexcept;
   void take_event(EventQueue& queue) noexcept;
   void raise_internal(int event) noexcept;
-  void execution_error() noexcept;
+  void execution_error(const ExecutionProblem& problem) noexcept;
 
   // Bumpless transfer (take_over.cc).
   void take_configuration(const Statechart& old, const TakeOverMap& map) noexcept;
@@ -168,6 +177,8 @@ class Statechart {
   std::vector<LogRecord> logs_;
   std::vector<ScriptRequest> script_requests_;
   core::FaultCounters faults_;
+  ExecutionProblem problem_;
+  std::int64_t problem_tick_ = -1;
   int control_ = 0;
   int steps_ = 0;  // micro steps in this tick
   bool finished_ = false;

@@ -92,10 +92,11 @@ void Statechart::find_deadlines(int s, std::int64_t unknown) noexcept {
   for (int k = timers.first; k < timers.end(); ++k) {
     const std::size_t t = idx(index_.timers[idx(k)]);
     if (deadlines_[t] != unknown) continue;
-    const double seconds = evaluate(chart_.expressions, chart_.transitions[t].after, context_);
+    const int after = chart_.transitions[t].after;
+    const double seconds = evaluate(chart_.expressions, after, context_);
     const std::int64_t periods = periods_of(seconds, chart_.rate_mhz);
     deadlines_[t] = periods < 0 ? -1 : entry_ticks_[idx(s)] + periods;
-    if (periods < 0) execution_error();
+    if (periods < 0) execution_error(no_time(after, seconds));
   }
 }
 

@@ -81,14 +81,17 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   return out;
 }
 
+std::string Diagnostics::place_text(const Mark& mark) const {
+  if (mark.file < 0 || mark.file >= file_count()) return "";
+  const std::string name = on_one_line(file(mark.file));
+  return mark.line > 0 ? fmt::format("{}:{}:{}", name, mark.line, mark.column) : name;
+}
+
 std::string Diagnostics::to_string() const {
   std::string out;
   for (const Diagnostic& item : sorted()) {
-    if (item.mark.file >= 0 && item.mark.file < static_cast<int>(files_.size())) {
-      out += on_one_line(file(item.mark.file)) + ":";
-      if (item.mark.line > 0) out += fmt::format("{}:{}:", item.mark.line, item.mark.column);
-      out += " ";
-    }
+    const std::string place = place_text(item.mark);
+    if (!place.empty()) out += place + ": ";
     out += item.severity == Severity::error ? "error: " : "warning: ";
     out += on_one_line(item.text) + "\n";
   }

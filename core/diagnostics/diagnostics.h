@@ -58,6 +58,8 @@ class Diagnostics {
   const std::vector<Diagnostic>& all() const { return items_; }
   int file_count() const { return static_cast<int>(files_.size()); }
   const std::string& file(int index) const { return files_[static_cast<std::size_t>(index)]; }
+  // `file:line:col`, or what of it is known.
+  std::string place_text(const Mark& mark) const;
   // Sorted by file and position, without repeated problems.
   std::vector<Diagnostic> sorted() const;
   // `file:line:col: error: text`, one problem a line, sorted by file and position.

@@ -84,7 +84,9 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"no-mirror-image", kWarning, "an argument that the robot's symmetry does not exchange"},
     {"no-priority", kWarning, "a task without priority among others that have one"},
     {"no-script", kError, "an unreadable file of `scripts`"},
-    {"no-value", kWarning, "a condition that a state fails in which its signal has no value"},
+    {"no-value", kWarning,
+     "a condition that a state fails in which its signal has no value; an expression that never "
+     "has one"},
     {"not-mirrored", kWarning, "a side of the robot written out in a mirrored template"},
     {"open-quote", kError, "a quote without end"},
     {"out-of-range", kError, "a value outside its limits"},

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <vector>
 
@@ -137,6 +139,23 @@ std::int64_t telling_tick(const Log& log) {
     if (event.kind == "transition") last = &event;
   }
   return last != nullptr ? last->tick : log.inputs.first_tick + log.inputs.ticks() - 1;
+}
+
+std::string faults_until(const Log& log, std::int64_t tick) {
+  constexpr double kBefore = 1.0;  // s: a fall is the end of something
+  const auto rate = static_cast<double>(log.rate_mhz) / 1e3;
+  const std::int64_t from = tick - std::llround(kBefore * rate);
+  std::string faults, end;
+  for (const LoggedEvent& event : log.events) {
+    if (event.kind == "fault" && event.tick > from && event.tick <= tick) {
+      faults += fmt::format("  {:.6f} s  {}  {}\n", event.time, event.name, event.detail);
+    }
+    const bool by_itself = event.kind == "end" && !event.detail.empty();
+    if (by_itself && std::abs(event.tick - tick) <= 1) {
+      end = fmt::format("end: {}\n", event.detail);
+    }
+  }
+  return (faults.empty() ? "" : "faults of the last second:\n" + faults) + end;
 }
 
 std::string explain_tick(Replay& replay, std::int64_t tick) {

@@ -17,4 +17,7 @@ std::int64_t telling_tick(const Log& log);
 // Throws std::runtime_error if the log is shorter.
 std::string explain_tick(Replay& replay, std::int64_t tick);
 
+// The faults of the second up to a tick, and the reason if the run ended there; lines, maybe none.
+std::string faults_until(const Log& log, std::int64_t tick);
+
 }  // namespace footfall::lab

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "core/units/units.h"
 #include "engine/tick/fall.h"
 
 namespace footfall::lab {
@@ -81,6 +84,7 @@ std::string judge_swing(const ControlLoop& loop, EndCause& cause) {
 std::string judge_fault(const ControlLoop& loop, Fault fault, EndCause& cause) {
   cause.criterion = std::string(core::fault_name(fault));
   const engine::FaultPlace& place = loop.last_place(fault);
+  if (fault == Fault::execution) return "fault execution: " + execution_text(loop);
   if (place.joint < 0) return "fault " + cause.criterion;
   cause.subject = place_name(loop, fault, place);
   cause.value = place.value;
@@ -157,6 +161,50 @@ std::vector<WorstFault> worst_faults(const ControlLoop& loop) {
     worst.push_back({fault, place_name(loop, fault, place), place.value, unit_of(fault)});
   }
   return worst;
+}
+
+namespace {
+
+std::string problem_text(const behaviors::Chart& chart,
+                         const behaviors::ExecutionProblem& problem) {
+  using Kind = behaviors::ExecutionProblem::Kind;
+  switch (problem.kind) {
+    case Kind::value:
+    case Kind::order: {
+      const bool known = problem.index >= 0 && problem.index < chart.expressions.size();
+      const std::string unit =
+          known ? core::unit_text(chart.expressions[problem.index].dimension) : "";
+      const std::string value =
+          fmt::format("{:.6g}{}{}", problem.value, unit.empty() ? "" : " ", unit);
+      if (!std::isfinite(problem.value)) return "it has no value";
+      if (problem.kind == Kind::order)
+        return "a waypoint at " + value + ", not after the one before";
+      return fmt::format("it is {}, outside {:g} to {:g}", value, problem.min, problem.max);
+    }
+    case Kind::micro_steps:
+      return fmt::format("more than {} transitions one after another in a tick", chart.micro_steps);
+    case Kind::call:
+      return fmt::format("'{}' failed", chart.calls[static_cast<std::size_t>(problem.index)].name);
+    case Kind::requests:
+      return "too many calls of scripts in one tick";
+    case Kind::none:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string execution_text(const ControlLoop& loop) {
+  const behaviors::ExecutionProblem& problem = loop.machine().execution_problem();
+  const behaviors::Chart& chart = loop.behavior();
+  const auto index = static_cast<std::size_t>(problem.index);
+  const bool placed = (problem.kind == behaviors::ExecutionProblem::Kind::value ||
+                       problem.kind == behaviors::ExecutionProblem::Kind::order) &&
+                      problem.index >= 0 && index < chart.expression_places.size();
+  std::string text = placed ? chart.expression_places[index] : "";
+  if (!text.empty()) text += ": ";
+  return text + problem_text(chart, problem);
 }
 
 }  // namespace footfall::lab

@@ -42,4 +42,7 @@ std::vector<WorstFault> worst_faults(const engine::ControlLoop& loop);
 std::string place_text(const engine::ControlLoop& loop, core::Fault fault,
                        const engine::FaultPlace& place);
 
+// `b.yaml:5:12: it is 4, outside 0 to 3`: the loop's last problem with an expression or call.
+std::string execution_text(const engine::ControlLoop& loop);
+
 }  // namespace footfall::lab

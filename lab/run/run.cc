@@ -252,6 +252,7 @@ RunResult run(engine::ControlLoop& loop, RunSpec& spec) {
     result.cause = explain_end(last, recorder.log().states_before());
   }
   result.worst = worst_faults(last);
+  result.execution_error = recorder.log().first_execution_error();
   result.faults = last.faults();
   const int marked = last.behavior().layout.steps;
   if (marked >= 0) result.marked_steps = std::llround(last.signals().values()[marked]);

@@ -83,6 +83,7 @@ struct RunResult {
   std::optional<EndCause> cause;  // of a fall or a stop by a fault
   RunFigures figures;
   core::FaultCounters faults;
+  std::string execution_error;    // the first one, with its place; empty: none
   std::int64_t marked_steps = 0;  // `mark: step` of the behavior; figures.steps are the feet's
   std::vector<WorstFault> worst;  // of the joints' faults, in the order of core::Fault
   core::TimingHistogram tick_time;

@@ -77,6 +77,9 @@ void RunLog::after_start() {
 }
 
 void RunLog::after_tick(const StepEvent& step) {
+  if (first_execution_error_.empty() && loop_.faults().of(core::Fault::execution) > 0) {
+    first_execution_error_ = fmt::format("{}, at {:.3f} s", execution_text(loop_), loop_.time());
+  }
   if (!log_) {
     if (said_) write_texts();
     return;
@@ -146,7 +149,9 @@ bool RunLog::write_faults() {
   for (int f = 0; f < core::kFaultCount; ++f) {
     const auto fault = static_cast<core::Fault>(f);
     if (loop_.faults().of(fault) == seen_faults_.of(fault)) continue;
-    const std::string place = place_text(loop_, fault, loop_.last_place(fault));
+    const std::string place = fault == core::Fault::execution
+                                  ? execution_text(loop_)
+                                  : place_text(loop_, fault, loop_.last_place(fault));
     event("fault", core::fault_name(fault),
           fmt::format("{}{}{}", loop_.faults().of(fault), place.empty() ? "" : ", ", place));
   }

@@ -38,6 +38,8 @@ class RunLog {
   std::string state_name() const;
   // Atomic states at the start of the tick: what a fault's tick has left.
   std::span<const int> states_before() const noexcept { return states_before_; }
+  // Of the first fault `execution`; empty: there was none.
+  const std::string& first_execution_error() const noexcept { return first_execution_error_; }
 
  private:
   void write_edits();
@@ -52,6 +54,7 @@ class RunLog {
   core::FaultCounters seen_faults_;
   std::vector<std::array<double, 3>> last_targets_;
   std::vector<int> states_before_;
+  std::string first_execution_error_;
 };
 
 // What a run was made from besides its behavior.

@@ -117,6 +117,7 @@ std::string faults_text(const RunResult& result) {
     if (result.faults.ticks_of(fault) > result.faults.of(fault)) {
       text += fmt::format(" in {} ticks", result.faults.ticks_of(fault));
     }
+    if (fault == core::Fault::execution) text += fmt::format(" (first {})", result.execution_error);
     for (const WorstFault& worst : result.worst) {
       if (worst.fault != fault) continue;
       text += fmt::format(" (worst {} {:.3g}{}{})", worst.joint, worst.value,
@@ -270,6 +271,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["fault_ticks"] = fault_ticks_json(result.faults);
   out["cause"] = cause_json(result);
   out["worst_fault"] = worst_json(result);
+  out["execution_error"] = result.execution_error.empty() ? Json() : Json(result.execution_error);
   const bool let_go = result.end == RunEnd::finished || result.cause.has_value();
   out["end_torque_step_Nm"] = f.roll.count > 0 && let_go ? Json(f.end_torque_step) : Json();
   out["marked_steps"] = result.marked_steps;

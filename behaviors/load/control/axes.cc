@@ -49,8 +49,9 @@ bool compile_parameter(LoadContext& context, const core::YamlNode& node, const A
       report_dimension(context, node, axes.dimensions[k], info.dimension);
       return true;
     }
-    out[k] = context.behavior.expressions.add_parameter(info.slot + static_cast<int>(k),
-                                                        axes.dimensions[k]);
+    const int slot = info.slot + static_cast<int>(k);
+    out[k] = context.remember_place(
+        context.behavior.expressions.add_parameter(slot, axes.dimensions[k]), node.mark);
   }
   return true;
 }
@@ -70,7 +71,8 @@ bool compile_signals(LoadContext& context, const core::YamlNode& node, const Axe
       report_dimension(context, node, axes.dimensions[k], dimension);
       return true;
     }
-    out[k] = context.behavior.expressions.add_signal(found[k], dimension);
+    out[k] = context.remember_place(context.behavior.expressions.add_signal(found[k], dimension),
+                                    node.mark);
   }
   return true;
 }

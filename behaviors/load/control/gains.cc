@@ -101,7 +101,7 @@ void check_values(LoadContext& context, const core::YamlNode& node, const Parame
 }
 
 // Index of an axis by name or number; an error and nothing if there is none.
-std::optional<std::size_t> find_axis(LoadContext& context, const AxisSetting& setting,
+std::optional<std::size_t> find_axis(LoadContext& context, const GainSetting& setting,
                                      const GainAxes& use) {
   std::size_t index = 0;
   const char* const end = setting.axis.data() + setting.axis.size();
@@ -117,8 +117,8 @@ std::optional<std::size_t> find_axis(LoadContext& context, const AxisSetting& se
   return std::nullopt;
 }
 
-void refuse_axis_settings(LoadContext& context, const ParameterInfo& info) {
-  for (const AxisSetting& setting : context.axis_settings) {
+void refuse_gain_settings(LoadContext& context, const ParameterInfo& info) {
+  for (const GainSetting& setting : context.gain_settings) {
     if (setting.gain != info.name) continue;
     context.error(setting.value.mark, "unknown-setting",
                   fmt::format("--set {}: {} is computed; set what it is computed from, or all of "
@@ -127,19 +127,23 @@ void refuse_axis_settings(LoadContext& context, const ParameterInfo& info) {
   }
 }
 
-// Puts the values of --set for single axes in; returns whether there were any.
-bool apply_axis_settings(LoadContext& context, const ParameterInfo& info, const GainAxes& use,
+// Puts the values of --set in; returns whether there were any by axis.
+bool apply_gain_settings(LoadContext& context, const ParameterInfo& info, const GainAxes& use,
                          std::vector<double>& values) {
   bool any = false;
-  for (const AxisSetting& setting : context.axis_settings) {
+  for (const GainSetting& setting : context.gain_settings) {
     if (setting.gain != info.name) continue;
-    any = true;
-    const auto axis = find_axis(context, setting, use);
-    if (!axis) continue;
-    const auto value = core::read_quantity(setting.value, info.dimension, context.diagnostics);
-    if (!value) continue;
-    values[*axis] = *value;
-    check_values(context, setting.value, info, {*value});
+    std::optional<std::vector<double>> all;
+    if (setting.axis.empty()) {
+      all = read_values(context, setting.value, info.dimension, use);
+    } else if (const auto axis = find_axis(context, setting, use)) {
+      const auto value = core::read_quantity(setting.value, info.dimension, context.diagnostics);
+      if (value) all = values, (*all)[*axis] = *value;
+      any = true;
+    }
+    if (!all || all->size() != values.size()) continue;  // told
+    values = *all;
+    check_values(context, setting.value, info, values);
   }
   return any;
 }
@@ -156,7 +160,7 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
     info.name = entry.name + "." + kGainNames[k];
     info.dimension = kDimensions[k];
     if (entry.computed[k]) {
-      refuse_axis_settings(context, info);
+      refuse_gain_settings(context, info);
       continue;
     }
     auto values = read_values(context, *node, kDimensions[k], use);
@@ -172,7 +176,7 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
       info.live = true;
     }
     check_values(context, *node, info, *values);
-    entry.by_axis[k] = apply_axis_settings(context, info, use, *values);
+    entry.by_axis[k] = apply_gain_settings(context, info, use, *values);
     entry.slots[k] = info.slot;
     entry.sizes[k] = info.size;
     behavior.parameters.push_back(info);
@@ -309,6 +313,24 @@ void make_unused_gains(LoadContext& context) {
       context.absence(entry.node->mark, "unused", fmt::format("no task uses {}", name));
     }
     make_slots(context, entry, {});
+  }
+}
+
+void check_gain_settings(LoadContext& context) {
+  std::vector<std::string> names;
+  for (const ParameterInfo& parameter : context.behavior.parameters) {
+    if (parameter.gain) names.push_back(parameter.name);
+  }
+  for (const auto& [name, entry] : context.gain_entries) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (entry.computed[k]) names.push_back(name + "." + kGainNames[k]);
+    }
+  }
+  for (const GainSetting& setting : context.gain_settings) {
+    if (std::ranges::find(names, setting.gain) != names.end()) continue;
+    context.error(setting.value.mark, "unknown-setting",
+                  fmt::format("--set {}: there is no '{}'{}", setting.name, setting.gain,
+                              core::did_you_mean(setting.gain, names)));
   }
 }
 

@@ -58,6 +58,24 @@ class Logs(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("seed: '3' against '4'", done.stdout)
 
+    def test_a_fault_of_execution_says_where_and_what(self):
+        text = ("behavior: 1\nbase: balance_best\nparameters: {gain: {value: 1, range: [0, 3]}}\nmachine:\n  transitions:\n"
+                "    - {on: contact.left_foot.touchdown, do: [{set: {gain: = $gain + 1}}]}\n")
+        (self.folder / "g.yaml").write_text(text)
+        run = self.footfall("run", "g.yaml", "--for", "5s", "--log", "g", "--json")
+        error = json.loads(run.stdout.splitlines()[-1])["execution_error"]
+        self.assertIn("g.yaml:6:60: it is 4, outside 0 to 3, at ", error)
+        self.assertIn(error, run.stderr)
+        self.assertIn("execution  1, ", self.footfall("events", "g").stdout)
+        self.assertIn("it is 4, outside 0 to 3", self.footfall("why", "g", "--at", error.split(" at ")[1]).stdout)
+
+    def test_why_of_a_fall_names_what_fell_and_the_faults_before(self):
+        run = self.footfall("run", "balance_best", "--push", "400,0.1,90,1s", "--for", "4s", "--log", "f", "--json")
+        cause = json.loads(run.stdout.splitlines()[-1])["cause"]
+        why = self.footfall("why", "f").stdout
+        self.assertIn("end: " + cause["text"], why)
+        self.assertRegex(why, r"faults of the last second:\n(  .*\n)*  .* fall ")
+
     def test_why_names_the_last_transition(self):
         done = self.footfall("why", "a")
         self.assertEqual(done.returncode, 0, done.stderr)
