@@ -61,6 +61,9 @@ struct TuneModel {
   std::vector<double> file_values;  // the file's values; initially those at the start of the engine
 
   double value_now(int slot) const;
+  // The value in the tick of the newest telemetry; kNoValue (NaN) if the newest values are later,
+  // or do not prove it: they are of another revision, or earlier and on a ramp.
+  double value_in_telemetry(int slot) const;
   double value_target(int slot) const;
   double value_of_file(int slot) const;
 };

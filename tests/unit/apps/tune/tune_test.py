@@ -172,6 +172,32 @@ class Commands(Live):
         self.assertIn("state", self.good("watch", "--for", "10ms").splitlines()[0])
 
 
+    def test_watch_prints_a_ramp_beside_its_times_for_as_long_as_asked(self):
+        begin = self.good("ramp", "gains.single.swing.kp=480", "--over", "8s")
+        tick = int(re.match(r"accepted at tick (\d+)", begin)[1])
+        rows = [json.loads(line) for line in self.good("watch", "gains.single.swing.kp", "--json", "--for",
+                                                       "400ms").splitlines()]
+        self.good("undo", "--over", "1ms")
+        self.assertGreater(len(rows), 10)
+        self.assertLessEqual(rows[-1]["time_s"] - rows[0]["time_s"], 0.4 + 1e-6)
+        self.assertGreater(rows[-1]["time_s"] - rows[0]["time_s"], 0.35)
+        for row in rows:  # 10 a second from 400 on
+            self.assertAlmostEqual(row["gains.single.swing.kp"], 400 + 10 * (row["tick"] - tick) / 1500, delta=0.02)
+
+
+class Ends(Live):
+    """Last: it ends its run."""
+
+    def test_watch_ends_well_when_the_run_does(self):
+        watcher = subprocess.Popen([BINARY, "tune", "--url", self.url, "--timeout", "20s", "watch", "com.pos.z"],
+                                   env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        watcher.stdout.readline()
+        self.engine.send_signal(signal.SIGINT)
+        _, errors = watcher.communicate(timeout=20)
+        self.assertEqual(watcher.returncode, 0, errors)
+        self.assertRegex(without_session(errors), r"^the run has ended after [\d.]+ s\n$")
+
+
 class TwoEngines(Live):
     """A second run at the address of the first."""
 
