@@ -59,6 +59,7 @@ struct TuneModel {
   std::deque<TuneNote> notes;             // newest last
   SignalHistory history;
   std::vector<double> file_values;  // the file's values; initially those at the start of the engine
+  std::int64_t files_changed = 0;   // us since 1970, newest change of the files that were read
 
   double value_now(int slot) const;
   // The value in the tick of the newest telemetry; kNoValue (NaN) if the newest values are later,
