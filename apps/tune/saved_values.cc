@@ -15,7 +15,7 @@ namespace footfall::apps {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 constexpr std::size_t kRuns = 16;  // newest ones that are remembered
 
@@ -24,17 +24,17 @@ std::string place() {
 }
 
 // An empty list if there is none, or none that can be read.
-json read_runs() {
+Json read_runs() {
   try {
-    json runs = json::parse(core::read_whole_file(place()));
-    return runs.is_array() ? runs : json::array();
+    Json runs = Json::parse(core::read_whole_file(place()));
+    return runs.is_array() ? runs : Json::array();
   } catch (const std::exception&) {
-    return json::array();
+    return Json::array();
   }
 }
 
 // A reload makes another run of it: its catalogue has the files' values anew.
-bool is_of(const json& run, const TuneModel& model) {
+bool is_of(const Json& run, const TuneModel& model) {
   return run.value("session", std::int64_t{0}) == model.catalogue.session &&
          run.value("generation", std::int64_t{-1}) == model.catalogue.generation &&
          run.value("path", std::string()) == model.catalogue.path;
@@ -56,12 +56,12 @@ void copy(const TuneParameter& parameter, const std::vector<double>& from,
 KnownValues known_values(const TuneModel& model) {
   KnownValues known{model.catalogue.values, false};
   try {
-    for (const json& run : read_runs()) {
+    for (const Json& run : read_runs()) {
       if (!is_of(run, model)) continue;
       auto values = run.at("values").get<std::vector<double>>();
       if (values.size() == known.values.size()) known = {std::move(values), true};
     }
-  } catch (const json::exception&) {  // written by another version
+  } catch (const Json::exception&) {  // written by another version
   }
   return known;
 }
@@ -86,8 +86,8 @@ KnownValues after_save(const TuneModel& model, const KnownValues& known,
 
 void remember(const TuneModel& model, const KnownValues& known) {
   try {
-    json runs = read_runs(), kept = json::array();
-    for (json& run : runs) {
+    Json runs = read_runs(), kept = Json::array();
+    for (Json& run : runs) {
       if (!run.is_object() || is_of(run, model)) continue;
       if (runs.size() < kRuns || &run != &runs.front()) kept.push_back(std::move(run));
     }
