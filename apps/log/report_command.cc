@@ -115,6 +115,7 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
     require_no_input("-o", arguments.out, logs);
     require_no_input("--strip", arguments.strip, logs);
     require_no_input("--film", arguments.film, logs);
+    require_film_name(arguments.film);
     if (!arguments.more.empty()) {
       write_comparison(arguments, stream);
       return 0;

@@ -35,17 +35,6 @@ std::array<double, 3> at(const std::array<const std::vector<float>*, 3>& columns
   return values;
 }
 
-// The last two parts of a state's path: `right_foot lift`.
-std::string short_state(const std::string& path) {
-  const std::size_t last = path.rfind('.');
-  if (last == std::string::npos || last == 0) return path;
-  const std::size_t before = path.rfind('.', last - 1);
-  std::string name = before == std::string::npos ? path : path.substr(before + 1);
-  std::ranges::replace(name, '.', ' ');
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
-
 std::size_t row_at(const lab::Log& log, double time) {
   const auto found = std::ranges::lower_bound(log.time, time);
   return std::min(static_cast<std::size_t>(found - log.time.begin()), log.rows() - 1);
@@ -79,7 +68,7 @@ LoggedPose::LoggedPose(const lab::Log& log, const sim::FilmRenderer& renderer)
 sim::FilmFrame LoggedPose::frame(std::size_t row) const {
   sim::FilmFrame frame{renderer_.neutral(),
                        fmt::format("{:.3f} s", log_.time[row]),
-                       short_state(lab::state_path(log_, row)),
+                       lab::state_caption(lab::state_path(log_, row)),
                        {}};
   const std::array<double, 3> position = at(xyz(log_, "base.pos"), row);
   const std::array<double, 3> rpy = at(xyz(log_, "base.rpy", {"roll", "pitch", "yaw"}), row);

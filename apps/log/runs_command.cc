@@ -98,6 +98,7 @@ int prune(const RunsOptions& options) {
   if (old.empty()) return kGood;
   if (!options.yes && !confirmed("Remove them?")) return kGood;
   for (const std::string& folder : old) fs::remove_all(folder);
+  lab::mend_latest(options.folder);
   return kGood;
 }
 

@@ -9,6 +9,7 @@
 #include "apps/run/run_reload.h"
 #include "apps/run/run_setup.h"
 #include "apps/shared/commands.h"
+#include "apps/shared/output_option.h"
 #include "core/text/json_text.h"
 #include "core/text/whole_file.h"
 #include "engine/realtime/executive.h"
@@ -139,12 +140,28 @@ int show_result(const RunOptions& options, const lab::RunIdentity& id, const lab
   return report_code;
 }
 
+// A run without the push that was asked for has not tried what it should; one that was stopped by
+// hand has not had the time.
+bool has_failed(const lab::RunResult& result) {
+  const bool missed = !result.missed.empty() && result.end != lab::RunEnd::stopped;
+  return missed || result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault;
+}
+
+void check_duration(const RunOptions& options, const model::RobotDescription& robot) {
+  constexpr double kRounding = 1e-6;  // of a period
+  if (options.duration == 0.0 || options.duration >= robot.period_s() * (1.0 - kRounding)) return;
+  throw InputError(fmt::format(
+      "--for: error: expected at least a tick of '{}', {:.3g} ms, got '{}': nothing would be run",
+      robot.name, robot.period_s() * 1e3, options.duration_text));
+}
+
 int run_behavior(RunOptions options) {
   if (!options.film.empty() && (options.no_log || options.no_report)) {
     throw InputError(
         "--film: error: a film is made from the log with the report: leave out --no-log and "
         "--no-report");
   }
+  require_film_name(options.film);
   const sim::WorldDescription declared = declared_world(options, load_world(options.world));
   const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
@@ -153,6 +170,7 @@ int run_behavior(RunOptions options) {
     throw InputError(behavior->path +
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
+  check_duration(options, behavior->robot);
   check_links_of(declared, behavior->robot);
   model::Draw drawn;
   const sim::WorldDescription world = draw_world(options, *behavior, declared, drawn);
@@ -181,8 +199,7 @@ int run_behavior(RunOptions options) {
   if (spec.status) std::fputs("\r\033[K", stderr);
   if (log) log->close();
   const int report_code = show_result(options, id, result, link.get());
-  const bool failed = result.end == lab::RunEnd::fall || result.end == lab::RunEnd::fault;
-  return failed ? kRobotFailed : report_code;
+  return has_failed(result) ? kRobotFailed : report_code;
 }
 
 }  // namespace

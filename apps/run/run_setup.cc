@@ -94,6 +94,39 @@ void schedule_push(const model::Draw& drawn, const Backend& backend,
   spec.events.push_back(std::move(event));
 }
 
+namespace {
+
+// Parts of the `physics` line that most worlds lack: `, command delay 2 ms, model mass +10 %`.
+std::string more_physics(const sim::WorldDescription& world) {
+  std::string text;
+  if (world.actuators.command_delay > 0.0) {
+    text += fmt::format(", command delay {:.3g} ms", world.actuators.command_delay * 1e3);
+  }
+  const model::ModelDeviation& model = world.control_model;
+  const auto percent = [](double scale) { return (scale - 1.0) * 100.0; };
+  if (model.mass_scale != 1.0) {
+    text += fmt::format(", model mass {:+.3g} %", percent(model.mass_scale));
+  }
+  constexpr std::size_t kMostListed = 3;  // links
+  if (model.mass_scales.size() > kMostListed) {
+    const auto scale = [](const auto& link) { return link.second; };
+    const auto [least, most] = std::ranges::minmax_element(model.mass_scales, {}, scale);
+    text += fmt::format(", model mass of {} links {:+.3g} to {:+.3g} %", model.mass_scales.size(),
+                        percent(least->second), percent(most->second));
+  } else {
+    for (const auto& [link, scale] : model.mass_scales) {
+      text += fmt::format(", model mass of {} {:+.3g} %", link, percent(scale));
+    }
+  }
+  for (const auto& [link, shift] : model.com_shift) {
+    text += fmt::format(", model CoM of {} {:+.3g} {:+.3g} {:+.3g} mm", link, shift[0] * 1e3,
+                        shift[1] * 1e3, shift[2] * 1e3);
+  }
+  return text;
+}
+
+}  // namespace
+
 Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
                      const sim::WorldDescription& world) {
   Backend backend;
@@ -115,6 +148,7 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
       "constraints {}, mocap bodies {}, mass {:.2f} kg",
       1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max,
       f.armature_max, f.equalities, f.mocap_bodies, f.mass);
+  backend.physics += more_physics(world);
   backend.mujoco = mujoco.get();
   backend.hardware = std::move(mujoco);
   return backend;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -139,7 +140,15 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
           fmt::format("expected NAME=VALUE, got '{}'{}{}", text, hint.empty() ? "" : ": ", hint));
       continue;
     }
-    pairs.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
+    const auto before = std::ranges::find(pairs, name, [](const auto& pair) { return pair.first; });
+    if (before != pairs.end()) {
+      diagnostics.error({diagnostics.add_file("--set"), 0, 0}, "set",
+                        fmt::format("'{}' is set twice, to '{}' and to '{}': expected one of them",
+                                    name, before->second, value));
+      continue;
+    }
+    pairs.emplace_back(name, value);
   }
   return pairs;
 }

@@ -99,7 +99,7 @@ void check_links_of(const sim::WorldDescription& world, const model::RobotDescri
 // set).
 void print_diagnostics(const core::Diagnostics& diagnostics);
 
-// Splits NAME=VALUE texts; a text without `=` is reported as an error.
+// Splits NAME=VALUE texts; a text without `=` and a name given twice are reported as errors.
 std::vector<std::pair<std::string, std::string>> split_settings(const std::vector<std::string>& set,
                                                                 core::Diagnostics& diagnostics);
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "apps/shared/commands.h"
@@ -22,6 +24,15 @@ void require_no_input(const char* option, const std::string& output,
     throw InputError(
         fmt::format("{}: error: '{}' is a file that this command reads", option, output));
   }
+}
+
+void require_film_name(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (path.empty() || ending == ".mp4") return;
+  throw InputError(
+      fmt::format("--film: error: expected a file named *.mp4, got '{}': films are MP4", path));
 }
 
 }  // namespace footfall::apps

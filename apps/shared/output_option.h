@@ -12,4 +12,8 @@ namespace footfall::apps {
 void require_no_input(const char* option, const std::string& output,
                       const std::vector<std::string>& inputs);
 
+// Throws InputError (`--film: error: expected a file named *.mp4, got 'x.gif'`) for another ending:
+// the encoder makes MP4, and would say so only after the run. Empty is none.
+void require_film_name(const std::string& path);
+
 }  // namespace footfall::apps

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include "apps/suites/sweep_options.h"
 #include "apps/suites/sweep_setup.h"
 #include "apps/suites/sweep_slurm.h"
+#include "core/text/printable.h"
 #include "core/text/whole_file.h"
 #include "core/yaml_text/write.h"
 #include "lab/process/pool.h"
@@ -108,16 +110,30 @@ void write_report(const std::string& folder, const lab::SweepTable& table) {
   fmt::print("  report       {}\n", path);
 }
 
+bool is_broken(const lab::SweepRow& row) { return row.result.status > lab::SweepStatus::failed; }
+
+// The reason of the first broken run, which is often that of all of them, and how to see it.
+void print_first_broken(const lab::SweepTable& table) {
+  const auto broken = std::ranges::find_if(table.rows, is_broken);
+  if (broken == table.rows.end()) return;
+  fmt::print("  broken       run {}: {}\n", broken->id, core::on_one_line(broken->result.why));
+  std::string_view rest = broken->result.error_tail;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    fmt::print("               {}\n", rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  fmt::print("    rerun      {}\n", broken->command);
+}
+
 // 0 if all runs are done and none is broken.
 int exit_code_of(const lab::SweepTable& table) {
   const bool all = table.rows.size() == table.identity.runs;
-  for (const lab::SweepRow& row : table.rows) {
-    const lab::SweepStatus status = row.result.status;
-    if (status != lab::SweepStatus::passed && status != lab::SweepStatus::failed) {
-      return kRobotFailed;
-    }
-  }
-  return all ? kGood : kRobotFailed;
+  const bool pending = std::ranges::any_of(table.rows, [](const lab::SweepRow& row) {
+    return row.result.status == lab::SweepStatus::pending;
+  });
+  const bool good = all && !pending && std::ranges::none_of(table.rows, is_broken);
+  return good ? kGood : kRobotFailed;
 }
 
 int merge(const std::string& folder, bool report) {
@@ -125,6 +141,7 @@ int merge(const std::string& folder, bool report) {
   const lab::SweepTable table = store.read();
   const std::size_t pending = store.counts().front();
   fmt::print("{} of {} runs are here\n", table.rows.size() - pending, table.identity.runs);
+  print_first_broken(table);
   fmt::print("  results      {}\n", lab::store_path(folder, 1, 1));
   if (report) write_report(folder, table);
   return exit_code_of(table);
@@ -195,6 +212,7 @@ int run(const SweepCommandOptions& options, const Loaded& loaded, const std::str
              progress.done < progress.to_do ? ": stopped; repeat the command to continue" : "");
   fmt::print("  results      {}\n", lab::store_path(out, options.shard, options.shards));
   const lab::SweepTable table = store.read();
+  print_first_broken(table);
   if (!options.no_report && options.shards == 1) write_report(out, table);
   if (options.shards == 1) return exit_code_of(table);
   return progress.broken > 0 || progress.done < progress.to_do ? kRobotFailed : kGood;

@@ -28,7 +28,7 @@ void add_plan_options(CLI::App& command, SweepCommandOptions& o) {
   one("--count", p.count, "Number of samples (default 20)");
   one("--sample-seed", p.sample_seed, "Seed of the samples (default 1)");
   one("--method", p.method, "random or latin_hypercube");
-  one("--seeds", p.seeds, "100..119 or 1,2,3: seeds, one run each");
+  one("--seeds", p.seeds, "100..119 or 1,2,5: seeds, one run each");
   one("--faults", p.faults,
       "none,mocap.dropout@5s:2s: injected faults, one run each (default: from 2 s to the end)");
   one("--worlds,--world", p.worlds, "flat,slippery: worlds, one run each");

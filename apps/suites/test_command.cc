@@ -103,7 +103,8 @@ lab::SuiteSelection selection_of(const TestOptions& options) {
   if (!options.seeds.empty()) {
     const auto seeds = lab::parse_seeds(options.seeds);
     if (!seeds) {
-      throw InputError("--seeds: error: expected seeds such as 1..20, got '" + options.seeds + "'");
+      throw InputError("--seeds: error: expected seeds such as 1..20 or 1,2,5, each once, got '" +
+                       options.seeds + "'");
     }
     selection.seeds = *seeds;
   }
@@ -347,7 +348,8 @@ void add_options(CLI::App& command, TestOptions& o) {
   command.add_option("--label,--labels", o.labels, "Only scenarios with one of these labels");
   command.add_flag("--quick", o.quick, "Only scenarios with the label `quick`");
   command.add_option("--shard", o.shard, "I/N: the I-th of N shards of about equal duration");
-  command.add_option("--seeds", o.seeds, "A..B: these seeds instead of the scenarios' own");
+  command.add_option("--seeds", o.seeds,
+                     "1..20 or 1,2,5: these seeds instead of the scenarios' own");
   command.add_option(
       "--timeout", o.timeout,
       "Limit of wall time of one run, e.g. 60s (default: 60 s and 3 s for each second of it)");

@@ -115,7 +115,9 @@ void add_views(CLI::App& tune, const Options& o, int& exit_code) {
                  "Prints signals and values as they arrive, and all users' edits", tune_watch);
   watch->add_option("NAME", o->names, "Signals, parameters, gains; patterns");
   watch->add_flag("--json", o->json, "One JSON object a line");
-  add_time(*watch, "--for", o->duration, "Duration (default: until Ctrl-C)");
+  add_time(*watch, "--for", o->duration,
+           "Time of the run from the first line to the last one (default: until Ctrl-C, or the "
+           "run's end)");
   add_time(*watch, "--every", o->every, "Minimum time between lines");
   watch->footer("Example: footfall tune watch com.pos.z lift_time --every 100ms");
 }

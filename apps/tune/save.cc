@@ -27,6 +27,23 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+// Whether a save with --to writes the file that runs after all.
+bool is_own_file(const std::string& path, const std::string& overlay) {
+  std::error_code ignored;
+  return overlay.empty() || fs::equivalent(path, overlay, ignored);
+}
+
+std::string edited_text(const TuneModel& model, const KnownValues& known,
+                        const TuneParameter& parameter) {
+  const auto was = std::span(known.values).subspan(at(parameter.first), at(parameter.size));
+  return fmt::format(
+      "{}: the file was edited {}: it has {} now, had {} then; --to FILE saves elsewhere, names "
+      "behind "
+      "`save` choose others",
+      parameter.name, known.of_files ? "since the last save" : "while the run was on",
+      exact_values(file_of(model, parameter), parameter.unit), exact_values(was, parameter.unit));
+}
+
 }  // namespace
 
 TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
@@ -41,15 +58,23 @@ TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
   }
   // An overlay may differ from the file that runs in any value.
   const bool exists = !overlay.empty() && fs::is_regular_file(overlay, ignored);
+  const bool own = is_own_file(path, overlay);
+  const KnownValues known = known_values(model);
   std::vector<behaviors::NamedValue> values;
+  std::vector<int> saved;
   for (const int index : parameters) {
     const TuneParameter& parameter = model.parameters[at(index)];
     const auto target = target_of(model, parameter);
-    if (exists || differs_from_file(model, parameter)) {
-      values.push_back({parameter.name, {target.begin(), target.end()}});
+    const bool differs = differs_from_file(model, parameter);
+    if (!exists && !differs) continue;
+    values.push_back({parameter.name, {target.begin(), target.end()}});
+    saved.push_back(index);
+    if (own && differs && was_edited(model, known, parameter)) {
+      save.problems.push_back(edited_text(model, known, parameter));
     }
   }
-  if (values.empty()) return save;
+  if (values.empty() || !save.problems.empty()) return save;
+  if (own) save.known = after_save(model, known, saved);
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
   options.search = search_path();
@@ -63,10 +88,12 @@ TuneSave plan_tune_save(TuneModel& model, const std::vector<int>& parameters,
   return save;
 }
 
-std::vector<std::string> write_tune_save(const TuneSave& save, std::vector<std::string>& problems) {
+std::vector<std::string> write_tune_save(const TuneModel& model, const TuneSave& save,
+                                         std::vector<std::string>& problems) {
   std::vector<std::string> written;
   problems = behaviors::write_saved(save.plan);
   if (!problems.empty()) return written;
+  if (save.known) remember(model, *save.known);
   for (const core::FileChange& file : save.plan.files) {
     written.push_back(file.path + ": written");
   }
@@ -92,7 +119,9 @@ int tune_save(const TuneOptions& options) {
   for (const std::string& problem : save.problems) fmt::print(stderr, "error: {}\n", problem);
   if (!save.problems.empty()) return kBadInput;
   const std::string& name = options.file.empty() ? model.catalogue.path : options.file;
-  return show_and_write(save.plan, name, options.dry_run, options.yes);
+  const int code = show_and_write(save.plan, name, options.dry_run, options.yes);
+  if (code == kGood && !options.dry_run && save.known) remember(model, *save.known);
+  return code;
 }
 
 }  // namespace footfall::apps

@@ -102,7 +102,7 @@ void preview_save(Screen& screen) {
 
 void write_save(Screen& screen) {
   std::vector<std::string> problems;
-  const auto written = write_tune_save(screen.save, problems);
+  const auto written = write_tune_save(screen.session.model, screen.save, problems);
   show_message(screen.view,
                fmt::format("{}", fmt::join(problems.empty() ? written : problems, "; ")),
                !problems.empty());

@@ -2,6 +2,7 @@
 #include "apps/tune/session.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -152,6 +153,22 @@ int send_and_explain(TuneSession& session, const footfall_lcm::request_t& reques
   return answer->accepted != 0 ? kGood : kRobotFailed;
 }
 
+namespace {
+
+// us since 1970. Not the time of the content, which a file that is moved here brings along.
+std::int64_t newest_change(const std::vector<std::string>& files) {
+  std::int64_t newest = 0;
+  for (const std::string& file : files) {
+    struct stat facts {};
+    if (::stat(file.c_str(), &facts) != 0) continue;
+    newest = std::max(
+        newest, std::int64_t{facts.st_ctim.tv_sec} * 1'000'000 + facts.st_ctim.tv_nsec / 1000);
+  }
+  return newest;
+}
+
+}  // namespace
+
 bool read_file_values(TuneModel& model) {
   core::Diagnostics diagnostics;
   behaviors::LoadOptions options;
@@ -168,6 +185,7 @@ bool read_file_values(TuneModel& model) {
     }
   }
   take_file_values(model, std::move(values));
+  model.files_changed = newest_change(behavior->files);
   return true;
 }
 

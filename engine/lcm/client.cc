@@ -2,26 +2,21 @@
 #include "engine/lcm/client.h"
 
 #include <sodium.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <deque>
 #include <footfall_lcm/hello_t.hpp>
 #include <map>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
 #include "core/process/machine_error.h"
-#include "core/text/printable.h"
-#include "engine/edits/door.h"
 #include "engine/lcm/bus.h"
 #include "engine/lcm/known_engines.h"
+#include "engine/live/client_name.h"
 #include "engine/live/codec.h"
-#include "engine/live/host_name.h"
 
 namespace footfall::engine {
 namespace {
@@ -39,21 +34,6 @@ double seconds_since(Clock::time_point then) {
   return std::chrono::duration<double>(Clock::now() - then).count();
 }
 
-std::string user_at_host() {
-  const char* const user = std::getenv("USER");
-  const std::string name = user != nullptr && *user != '\0' ? user : std::to_string(::getuid());
-  return core::on_one_line(name + "@" + host_name());
-}
-
-// A name that the engine would refuse as malformed, or cut.
-std::string name_for_others(const std::string& who) {
-  if (who.empty()) return core::printable(user_at_host(), kMaxWho);
-  if (who.size() <= kMaxWho && core::printable(who, kMaxWho) == who) return who;
-  throw std::invalid_argument("'" + core::printable(who, kMaxWho) +
-                              "' is no name of a user: expected at most " +
-                              std::to_string(kMaxWho) + " bytes of printable text");
-}
-
 int index_of(const std::vector<std::string>& names, std::string_view name) {
   const auto found = std::ranges::find(names, name);
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
@@ -64,7 +44,7 @@ int index_of(const std::vector<std::string>& names, std::string_view name) {
 struct LiveClient::Impl {
   explicit Impl(const LiveClientSettings& how) : settings(how), bus(url_of(how), kLargest) {
     check_live_prefix(how.prefix);
-    settings.who = name_for_others(settings.who);
+    settings.who = client_name(settings.who);
     if (sodium_init() < 0) throw core::MachineError("this machine gives no random numbers");
     randombytes_buf(&number, sizeof number);
     number = std::max<std::int64_t>(1, number & INT64_MAX);
@@ -150,6 +130,7 @@ struct LiveClient::Impl {
     }
     values = message;
     values_here = true;
+    keep(all_values, message);
   }
 
   void take_telemetry(const telemetry_t& message) {
@@ -266,6 +247,7 @@ struct LiveClient::Impl {
   bool values_here = false, hello_wanted = true;
   std::map<std::int64_t, Sent> unanswered;  // requests by sequence
   std::vector<answer_t> answers;
+  std::vector<values_t> all_values;
   std::vector<telemetry_t> all_telemetry;
   std::set<std::pair<std::int64_t, std::int64_t>> seen;  // answers, by client and sequence
   std::deque<std::pair<std::int64_t, std::int64_t>> known_order;
@@ -390,6 +372,7 @@ std::optional<answer_t> LiveClient::ask(const request_t& request, double timeout
 
 std::size_t LiveClient::waiting() const { return impl_->unanswered.size(); }
 std::vector<answer_t> LiveClient::take_answers() { return std::exchange(impl_->answers, {}); }
+std::vector<values_t> LiveClient::take_values() { return std::exchange(impl_->all_values, {}); }
 std::vector<telemetry_t> LiveClient::take_telemetry() {
   return std::exchange(impl_->all_telemetry, {});
 }

@@ -92,9 +92,10 @@ class LiveClient {
   // Number of this client's unanswered requests.
   std::size_t waiting() const;
 
-  // Messages since the last call, in order: answers to all clients (repetitions only once), and
-  // telemetry (at most the newest 4096 of each).
+  // Messages since the last call, in order: answers to all clients (repetitions only once), values
+  // and telemetry (at most the newest 4096 of each).
   std::vector<footfall_lcm::answer_t> take_answers();
+  std::vector<footfall_lcm::values_t> take_values();
   std::vector<footfall_lcm::telemetry_t> take_telemetry();
   std::int64_t client() const;  // this client's number in answers and requests
   const std::string& who() const;

@@ -153,6 +153,9 @@ struct LcmLink::Impl {
   bool values_due(const LiveSnapshot& snapshot, Clock::duration since) const {
     if (snapshot.state != LoopState::running || since >= kValuesPause) return true;
     const bool moving = snapshot.now != snapshot.target;
+    // Each row of telemetry follows its values: a client must not show them with another time.
+    const bool stale = moving || told_moving || snapshot.revision != told_revision;
+    if (snapshot.telemetry && stale) return true;
     const bool changed = values_wanted || server.changed() || (told_moving && !moving);
     return (changed && since >= kValuesApart) || (moving && since >= kMovingApart);
   }
@@ -164,13 +167,14 @@ struct LcmLink::Impl {
     values_at = now;
     values_wanted = false;
     told_moving = snapshot.now != snapshot.target;
+    told_revision = snapshot.revision;
   }
 
-  // Publishes telemetry of all snapshots, and the newest values if they are due.
+  // Publishes telemetry of all snapshots, and before it the values that are due.
   void take_snapshots(Clock::time_point now) {
     while (const LiveSnapshot* snapshot = binding->feed.front()) {
-      if (snapshot->telemetry) publish_telemetry(*snapshot);
       if (values_due(*snapshot, now - values_at)) publish_values(*snapshot, now);
+      if (snapshot->telemetry) publish_telemetry(*snapshot);
       binding->feed.pop();
     }
   }
@@ -212,8 +216,16 @@ struct LcmLink::Impl {
       once();  // the last tick's snapshot
       server.rebind(binding->behavior, binding->entrance, "the run has ended", answers);
       publish_answers();
+      publish_end();
       tell_counters();
     });
+  }
+
+  // Most runs end in a tick like any other: by time, by steps, by hand.
+  void publish_end() {
+    if (counters.telemetry == 0) return;
+    telemetry.condition = footfall_lcm::telemetry_t::ENDED;
+    publish("TELEMETRY", telemetry);
   }
 
   // After an exception (such as out of memory) the current item is lost, the next one is handled.
@@ -233,6 +245,7 @@ struct LcmLink::Impl {
   LiveServer::Answers answers;
   footfall_lcm::telemetry_t telemetry;  // reused to keep its memory
   LinkCounters counters;
+  std::uint64_t told_revision = 0;  // of the door, in the values published last
   std::int64_t dropped_before = 0;  // snapshots dropped by the feeds of replaced loops
   bool catalogue_wanted = true, values_wanted = true, told_moving = false, version_told = false;
   Clock::time_point catalogue_at, values_at;

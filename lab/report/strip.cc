@@ -71,4 +71,13 @@ StripMoments strip_moments(const Log& log) {
   return strip;
 }
 
+std::string state_caption(const std::string& path) {
+  const std::size_t first = path.find('.');
+  const bool deep = first != std::string::npos && path.find('.', first + 1) != std::string::npos;
+  std::string name = deep ? path.substr(first + 1) : path;
+  std::ranges::replace(name, '.', ' ');
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
 }  // namespace footfall::lab

@@ -20,4 +20,8 @@ struct StripMoments {
 // part. Of a log without rows nothing.
 StripMoments strip_moments(const Log& log);
 
+// A state's path below a picture, without its first part if two are left: `right_foot lift carry`.
+// Feet are the second part in gaits, however deep the states below them are.
+std::string state_caption(const std::string& path);
+
 }  // namespace footfall::lab

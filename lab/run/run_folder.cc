@@ -60,9 +60,9 @@ std::string make_new_folder(const std::string& behavior) {
 
 // The link is replaced in one step; a reader sees the old run or the new one.
 void point_latest_to(const std::string& path) {
-  const fs::path target = fs::path(path).filename();
-  const std::string part = fmt::format("{}/.{}.{}", kRunsFolder, kLatest, ::getpid());
-  const std::string link = fmt::format("{}/{}", kRunsFolder, kLatest);
+  const fs::path folder = fs::path(path).parent_path(), target = fs::path(path).filename();
+  const std::string part = (folder / fmt::format(".{}.{}", kLatest, ::getpid())).string();
+  const std::string link = (folder / kLatest).string();
   if (::symlink(target.c_str(), part.c_str()) == 0 && ::rename(part.c_str(), link.c_str()) == 0) {
     return;
   }
@@ -117,6 +117,18 @@ std::vector<std::string> run_names(const std::string& folder) {
   }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+void mend_latest(const std::string& folder) {
+  const fs::path latest = fs::path(folder) / kLatest;
+  std::error_code ignored;
+  if (!fs::is_symlink(latest, ignored) || fs::exists(latest, ignored)) return;
+  const auto names = run_names(folder);
+  if (names.empty()) {
+    fs::remove(latest, ignored);
+  } else {
+    point_latest_to((fs::path(folder) / names.back()).string());
+  }
 }
 
 bool is_in_use(const std::string& folder) {

@@ -32,6 +32,9 @@ std::string newest_run(const std::string& folder);
 
 // The runs in a folder of runs, oldest first.
 std::vector<std::string> run_names(const std::string& folder);
+// After runs were removed: leads `latest` to the newest one that is left if its own is gone;
+// without any it is removed. Throws core::MachineError if the link cannot be made.
+void mend_latest(const std::string& folder);
 // Whether a run is writing to it.
 bool is_in_use(const std::string& folder);
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "core/text/whole_file.h"
 #include "core/yaml/glob.h"
@@ -185,7 +186,10 @@ std::vector<SuiteScenario> shard_of(std::vector<SuiteScenario> scenarios, int sh
   return part;
 }
 
-std::optional<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
+namespace {
+
+// Appends `A..B` or `A`; false if malformed, twice, or more than a session may have.
+bool add_seeds(std::string_view text, std::vector<std::uint64_t>& seeds) {
   const std::size_t dots = text.find("..");
   const auto number = [](std::string_view part) -> std::optional<std::uint64_t> {
     std::uint64_t value = 0;
@@ -193,14 +197,31 @@ std::optional<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
     const bool good = error == std::errc() && end == part.data() + part.size();
     return good ? std::optional(value) : std::nullopt;
   };
-  const auto first = number(std::string_view(text).substr(0, dots));
-  const auto last =
-      dots == std::string::npos ? first : number(std::string_view(text).substr(dots + 2));
-  if (!first || !last || *last < *first || *last - *first >= static_cast<std::uint64_t>(kMostSeeds))
-    return std::nullopt;
-  std::vector<std::uint64_t> seeds(*last - *first + 1);
-  std::iota(seeds.begin(), seeds.end(), *first);
-  return seeds;
+  const auto first = number(text.substr(0, dots));
+  const auto last = dots == std::string_view::npos ? first : number(text.substr(dots + 2));
+  const auto room = static_cast<std::uint64_t>(kMostSeeds) - seeds.size();
+  if (!first || !last || *last < *first || *last - *first >= room) return false;
+  const auto inside = [&](std::uint64_t seed) { return seed >= *first && seed <= *last; };
+  if (std::ranges::any_of(seeds, inside)) return false;
+  const std::size_t before = seeds.size();
+  seeds.resize(before + *last - *first + 1);
+  std::iota(seeds.begin() + static_cast<std::ptrdiff_t>(before), seeds.end(), *first);
+  return true;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
+  std::vector<std::uint64_t> seeds;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t comma = rest.find(',');
+    std::string_view part = rest.substr(0, comma);
+    part.remove_prefix(std::min(part.find_first_not_of(' '), part.size()));
+    if (!add_seeds(part, seeds)) return std::nullopt;
+    if (comma == std::string_view::npos) return seeds;
+    rest.remove_prefix(comma + 1);
+  }
 }
 
 }  // namespace footfall::lab

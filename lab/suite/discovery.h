@@ -36,7 +36,7 @@ std::vector<SuiteScenario> load_suite(const std::vector<std::string>& files,
 // because its expectations are judged over all its seeds.
 std::vector<SuiteScenario> shard_of(std::vector<SuiteScenario> scenarios, int shard, int shards);
 
-// `A..B` or `A`; nullopt if malformed.
+// `A`, `A..B`, or several of them with commas, each seed once; nullopt if malformed.
 std::optional<std::vector<std::uint64_t>> parse_seeds(const std::string& text);
 
 }  // namespace footfall::lab

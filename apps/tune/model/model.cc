@@ -181,6 +181,12 @@ footfall_lcm::change_t read_change(const TuneModel& model, std::string_view text
 }  // namespace
 
 double TuneModel::value_now(int slot) const { return element(values.now, slot); }
+double TuneModel::value_in_telemetry(int slot) const {
+  const bool same = values.tick == telemetry.tick;
+  const bool at_rest = values.tick < telemetry.tick && value_now(slot) == value_target(slot);
+  const bool known = values.revision == telemetry.revision && (same || at_rest);
+  return known ? value_now(slot) : kNoValue;
+}
 double TuneModel::value_target(int slot) const { return element(values.target, slot); }
 double TuneModel::value_of_file(int slot) const { return element(file_values, slot); }
 

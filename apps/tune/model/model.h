@@ -59,8 +59,12 @@ struct TuneModel {
   std::deque<TuneNote> notes;             // newest last
   SignalHistory history;
   std::vector<double> file_values;  // the file's values; initially those at the start of the engine
+  std::int64_t files_changed = 0;   // us since 1970, newest change of the files that were read
 
   double value_now(int slot) const;
+  // The value in the tick of the newest telemetry; kNoValue (NaN) if the newest values are later,
+  // or do not prove it: they are of another revision, or earlier and on a ramp.
+  double value_in_telemetry(int slot) const;
   double value_target(int slot) const;
   double value_of_file(int slot) const;
 };

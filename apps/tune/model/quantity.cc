@@ -152,7 +152,7 @@ double round_step(double size) {
 }
 
 double default_step(double nominal, double min, double max, double first, const DisplayUnit& unit) {
-  constexpr double kPartOfValue = 0.05, kPartOfRange = 0.02;
+  constexpr double kPartOfValue = 0.05, kPartOfRange = 0.05;
   double size = std::abs(nominal) * kPartOfValue;
   const double of_range = (max - min) * kPartOfRange;
   if (size == 0.0) size = first;

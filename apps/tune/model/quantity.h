@@ -42,7 +42,7 @@ std::optional<double> read_duration(std::string_view text);
 // The largest of 1, 2, 5 times a power of ten that is at most `size` (> 0).
 double round_step(double size);
 // The step, in the display unit, for a value that is `nominal` in its file with limits min to max
-// (SI; equal: unlimited): about a twentieth of the value, at most a fiftieth of the range. For zero
+// (SI; equal: unlimited): about a twentieth of the value, or of the range if that is less. For zero
 // values at most `first` (SI).
 double default_step(double nominal, double min, double max, double first, const DisplayUnit& unit);
 // The value (SI) after `steps` steps, rounded to a decimal number in the display unit.

@@ -121,6 +121,8 @@ std::string condition_text(const TuneModel& model) {
       return "finished";
     case telemetry_t::FALLEN:
       return "fallen";
+    case telemetry_t::ENDED:
+      return "ended";
     default:
       return "stopped";
   }

@@ -74,7 +74,8 @@ StyledLine entry_line(const TuneModel& model, const TuneOutbox& outbox, int inde
   };
   const Style style = selected ? Style::selected : Style::plain;
   const auto marked = [&](Style other) { return selected ? Style::selected : other; };
-  StyledLine line = {{selected ? "> " : "  ", style}, {fitted(entry.name, columns.name), style}};
+  StyledLine line = {{selected ? "> " : "  ", style},
+                     {fitted_name(entry.name, columns.name), style}};
   const bool changed = target != of_file;
   line.push_back({cell(now), marked(changed ? Style::warning : Style::plain)});
   line.push_back({target == now ? std::string(at(columns.value + 1), ' ') : cell(target),
@@ -136,7 +137,7 @@ void add_choice(Lines& lines, const TuneModel& model, TuneView& view, int width,
     if (signals) {
       const auto unit = core::parse_unit(signal_unit(model, name));
       const DisplayUnit shown{unit ? core::unit_text(unit->dimension) : std::string(), 1.0};
-      text = fitted(text, width - 20) +
+      text = fitted_name(text, width - 20) +
              fitted_right(shown_value(signal_value(model, name), shown, 5), 18);
     }
     line.push_back({text, k == view.choice ? Style::selected : Style::plain});

@@ -78,6 +78,18 @@ std::string fitted(std::string_view text, int columns) {
   return out + blanks(columns - used);
 }
 
+std::string fitted_name(std::string_view text, int columns) {
+  const int excess = text_columns(text) - columns;
+  if (excess <= 0 || columns < 4) return fitted(text, columns);
+  int used = 0;
+  bool all = true;
+  const std::string head = taken(text, (columns - 1) / 3, used, all);
+  std::string_view tail = text;
+  const int room = columns - 1 - used;
+  while (text_columns(tail) > room) tail.remove_prefix(sign_at(tail).bytes);
+  return fitted(head + "~" + std::string(tail), columns);
+}
+
 std::string fitted_right(std::string_view text, int columns) {
   int used = 0;
   const std::string out = cut(text, std::max(0, columns), used);

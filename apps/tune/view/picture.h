@@ -25,7 +25,9 @@ int text_columns(std::string_view text);
 // Truncates (with `~` as last character) or pads to exactly that many columns; control characters
 // and invalid UTF-8 become `?`.
 std::string fitted(std::string_view text, int columns);
-// Same, padded on the left.
+// Same for a dotted name, whose end tells it from its neighbours: truncated before the middle.
+std::string fitted_name(std::string_view text, int columns);
+// As fitted(), padded on the left.
 std::string fitted_right(std::string_view text, int columns);
 // Truncates or pads the line to exactly that many columns, in the style of the last span.
 void fit_line(StyledLine& line, int columns);

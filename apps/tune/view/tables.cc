@@ -72,7 +72,8 @@ ordered_json parameter_json(const TuneModel& model, const TuneParameter& paramet
 }
 
 double column_value(const TuneModel& model, const WatchColumn& column) {
-  return column.slot >= 0 ? model.value_now(column.slot) : signal_value(model, column.name);
+  return column.slot >= 0 ? model.value_in_telemetry(column.slot)
+                          : signal_value(model, column.name);
 }
 
 void add_column(const TuneModel& model, std::vector<WatchColumn>& columns, WatchColumn column) {

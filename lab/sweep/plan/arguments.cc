@@ -1,7 +1,9 @@
 // Converts command-line options to the tree of a sweep file; see loader.h.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/diagnostics/quantity_hint.h"
+#include "lab/suite/discovery.h"
 #include "lab/sweep/plan/loader.h"
 #include "lab/sweep/plan/yaml_build.h"
 
@@ -42,6 +44,14 @@ class OptionReader {
           fmt::format("expected NAME=VALUES, got '{}'{}{}", text, hint.empty() ? "" : ": ", hint));
     }
     return {};
+  }
+
+  // As `test` reads them. A file has a range, or a list: of a malformed one it tells which entry.
+  YamlNode seeds(const std::string& text) {
+    const bool list = text.find(',') != std::string::npos;
+    const auto parsed = parse_seeds(text);
+    if (list && parsed) return yaml(fmt::format("[{}]", fmt::join(*parsed, ", ")), "--seeds");
+    return yaml(list ? "[" + text + "]" : text, "--seeds");
   }
 
   // `130ms..160ms:4`, `[a, b]`, `{from: ...}`, or a single value.
@@ -117,10 +127,7 @@ YamlNode sweep_tree(const SweepArguments& a, bool scenario, Diagnostics& diagnos
   text("robot", a.robot, "--robot");
   if (!a.worlds.empty()) yaml_add(root, "worlds", reader.yaml("[" + a.worlds + "]", "--worlds"));
   if (!a.faults.empty()) yaml_add(root, "faults", reader.faults(a.faults));
-  if (!a.seeds.empty()) {
-    const bool list = a.seeds.find(',') != std::string::npos;
-    yaml_add(root, "seeds", reader.yaml(list ? "[" + a.seeds + "]" : a.seeds, "--seeds"));
-  }
+  if (!a.seeds.empty()) yaml_add(root, "seeds", reader.seeds(a.seeds));
   text("for", a.duration, "--for");
   const auto by_name = [&](const char* key, const std::vector<std::string>& texts,
                            const std::string& option, auto read) {

@@ -166,7 +166,8 @@ void read_sweep_seeds(SweepReader& reader, const YamlNode& root) {
   auto& seeds = reader.sweep.seeds;
   if (node->is_scalar()) {
     const auto parsed = parse_seeds(node->scalar);
-    if (parsed && parsed->back() <= static_cast<std::uint64_t>(kGreatestSweepSeed)) {
+    const bool list = node->scalar.find(',') != std::string::npos;  // in a file: `[1, 2]`
+    if (parsed && !list && parsed->back() <= static_cast<std::uint64_t>(kGreatestSweepSeed)) {
       seeds = *parsed;
     } else {
       core::report_expected(*node, "a seed, or a range such as 100..119", reader.diagnostics);

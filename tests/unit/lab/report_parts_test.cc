@@ -8,6 +8,7 @@
 #include "lab/report/report.h"
 #include "lab/report/sections.h"
 #include "lab/report/states.h"
+#include "lab/report/strip.h"
 
 namespace footfall::lab {
 namespace {
@@ -31,6 +32,13 @@ void add(Log& log, const std::string& name, std::vector<float> values) {
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+TEST(ReportStrip, ACaptionTellsTheFootHoweverDeepTheState) {
+  EXPECT_EQ(state_caption("step.right_foot.lift.carry"), "right foot lift carry");
+  EXPECT_EQ(state_caption("step.right_foot.land"), "right foot land");
+  EXPECT_EQ(state_caption("sway.right_foot"), "sway right foot");
+  EXPECT_EQ(state_caption("rise"), "rise");
 }
 
 TEST(ReportMarks, AnEditIsShownWithTheValueItChangedFrom) {

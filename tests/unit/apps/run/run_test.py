@@ -3,6 +3,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import time
@@ -148,6 +149,14 @@ class BadInput(Case):
             with self.subTest(duration):
                 self.refused(self.run_it("balance", "--for=" + duration), 2, "--for")
 
+    def test_a_duration_below_one_tick_runs_nothing(self):
+        self.refused(self.run_it("balance", "--for", "0.1ms"), 2, "--for", "a tick of 'hume', 0.667 ms, got '0.1ms'")
+
+    def test_a_film_that_is_no_mp4_is_refused_before_the_run(self):
+        result = self.footfall("run", "balance", "--for", "2s", "--film", "x.gif")
+        self.refused(result, 2, "--film: error: expected a file named *.mp4", "x.gif")
+        self.assertFalse((self.folder / "out").exists())
+
     def test_unknown_backend(self):
         self.refused(self.run_it("balance", "--backend", "gazebo"), 2, "gazebo")
 
@@ -162,6 +171,10 @@ class BadInput(Case):
         self.refused(self.run_it("balance", "--set", "lift_tine=150ms"), 2, "lift_tine", "lift_time")
         self.refused(self.run_it("balance", "--set", "lift_time"), 2, "lift_time")
         self.refused(self.run_it("balance", "--set", "lift_time=3s"), 2, "lift_time")
+
+    def test_a_name_that_is_set_twice(self):
+        self.refused(self.run_it("balance", "--set", "lift_time=150ms", "--set", "lift_time=140ms"), 2,
+                     "--set: error: 'lift_time' is set twice, to '150ms' and to '140ms'")
 
     def test_set_of_a_variable_that_the_start_overwrites_is_warned_of(self):
         result = self.run_it("balance_best", "--set", "height=0.95m", "--for", "10ms")
@@ -269,6 +282,31 @@ class Run(Case):
         self.assertEqual(contents[0][0], contents[1][0])
         same = contents[0][1].replace(b"/a/", b"/b/")
         self.assertEqual(same, contents[1][1])
+
+    def test_a_push_that_never_came_is_exit_code_1(self):
+        push = "40,0.1,90,step 16 phase 0.5"
+        result = self.run_it("balance", "--for", "0.1s", "--push", push, "--json")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(json.loads(result.stdout.splitlines()[-1])["missed"], [push])
+        self.assertIn("NEVER CAME", result.stderr)
+
+    def test_delay_and_model_error_of_the_world_are_in_the_summary(self):
+        for world, words in (("delay_2ms", "command delay 2 ms"), ("mass_plus_10", "model mass +10 %")):
+            result = self.footfall("run", "balance_best", "--world", world, "--for", "50ms", "--no-log")
+            self.assertRegex(result.stdout, rf"(?m)^  physics .*, {re.escape(words)}$")
+
+    def test_latest_leads_to_a_run_that_is_there(self):
+        latest = self.folder / "out/run/latest"
+        for _ in range(2):
+            self.footfall("run", "balance", "--for", "20ms", "--quiet", "--no-report")
+        runs = sorted(p for p in latest.parent.iterdir() if not p.is_symlink())
+        self.assertEqual(len(runs), 2)
+        latest.unlink()
+        latest.symlink_to(runs[0].name)
+        self.footfall("runs", "prune", "--keep", "1", "--yes")
+        self.assertEqual(os.readlink(latest), runs[1].name)
+        self.footfall("runs", "prune", "--keep", "0", "--yes")
+        self.assertFalse(os.path.lexists(latest))
 
     def test_a_fall_is_exit_code_1(self):
         result = self.run_it("balance", "--for", "5s", "--push", "800,0.2,40,0.3", "--json", "--quiet")

@@ -172,6 +172,8 @@ class Selection(Case):
     def test_seeds_of_the_command_line_take_the_place_of_the_files(self):
         self.names("--seeds", "7..8", "--filter", "stand")
         self.assertEqual([r["seed"] for r in self.session["scenarios"][0]["runs"]], [7, 8])
+        self.names("--seeds", "9,2..3", "--filter", "stand")  # as `sweep` takes them
+        self.assertEqual([r["seed"] for r in self.session["scenarios"][0]["runs"]], [9, 2, 3])
 
     def test_shards_are_the_whole_without_overlap(self):
         parts = [self.names("--shard", f"{i}/3") for i in (1, 2, 3)]
@@ -186,7 +188,7 @@ class Selection(Case):
         self.assertIn("nothing failed", self.footfall("--rerun-failed").stdout)
 
     def test_bad_arguments_are_exit_2_with_one_line(self):
-        for arguments in (["--shard", "4/3"], ["--shard", "x"], ["--seeds", "5..1"], ["--timeout", "5 kg"],
+        for arguments in (["--shard", "4/3"], ["--shard", "x"], ["--seeds", "5..1"], ["--seeds", "1,,2"], ["--seeds", "3,1..4"], ["--timeout", "5 kg"],
                           ["--filter", "none"], ["no/such.yaml"], ["--rerun-failed", "--out", "elsewhere"]):
             with self.subTest(arguments):
                 result = self.footfall(*arguments)

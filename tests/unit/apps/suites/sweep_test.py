@@ -2,6 +2,7 @@
 import collections
 import os
 import pathlib
+import re
 import signal
 import sqlite3
 import subprocess
@@ -57,6 +58,9 @@ class Children(SweepCase):
         self.assertIn("about to crash", tails[2])
         self.assertIn("it is wrong", tails[5])
         self.assertIn("8/8 runs, 1 failed, 5 broken", self.stdout)
+        first = self.stdout[self.stdout.index("  broken       run 1: "):]  # and why, and how to see it
+        self.assertIn("about to crash", first.splitlines()[1])
+        self.assertRegex(first, r"\n    rerun      footfall run .*--seed 2\b")
 
     def test_a_child_gets_its_parameters_and_what_it_says_becomes_figures(self):
         self.sweep(*VARY, "--seeds", "1..2", "--for", "5s", "--world", "slippery")
@@ -212,6 +216,8 @@ class Input(SweepCase):
     def test_list_prints_every_command(self):
         self.sweep(*VARY, "--seeds", "1..3", "--list")
         self.assertEqual(len(self.stdout.splitlines()), 6)
+        self.sweep(*VARY, "--seeds", "9,2..3", "--list")  # as `test` takes them
+        self.assertEqual([re.search(r"--seed (\d+)", line)[1] for line in self.stdout.splitlines()], list("923923"))
         self.assertEqual(self.starts(), [])
 
 

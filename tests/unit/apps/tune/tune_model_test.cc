@@ -208,6 +208,29 @@ TEST(TuneModel, WatchesSignalsAndValuesByNameAndPattern) {
   EXPECT_EQ(watch_json(model, columns)["states"][0], "step.right_foot.lift");
 }
 
+TEST(TuneModel, AValueIsShownOnlyBesideATickInWhichItHeld) {
+  TuneModel model = small_model();
+  std::vector<std::string> problems;
+  const auto columns = watch_columns(model, {"goal.x"}, problems);
+  const auto row = [&](std::int64_t tick, std::int64_t revision) {
+    auto told = told_telemetry(1e-3 * static_cast<double>(tick), 0.9F);
+    told.revision = revision;
+    take_telemetry(model, told);
+    return watch_json(model, columns)["goal.x"];
+  };
+  auto values = values_with(model, 1, 0.5, 3);
+  values.tick = 1000;
+  values.target[1] = 2.0;
+  take_values(model, values);
+  EXPECT_EQ(row(1000, 3), 0.5);
+  EXPECT_TRUE(row(999, 3).is_null()) << "earlier than the values";
+  EXPECT_TRUE(row(1020, 3).is_null()) << "it moves";
+  values.now[1] = 2.0;
+  take_values(model, values);
+  EXPECT_EQ(row(1020, 3), 2.0) << "at rest since";
+  EXPECT_TRUE(row(1020, 4).is_null()) << "an edit came between";
+}
+
 TEST(TuneModel, AParameterThatIsASignalTooIsWatchedOnce) {
   footfall_lcm::catalogue_t told = small_catalogue();
   told.signals.push_back("goal.x");

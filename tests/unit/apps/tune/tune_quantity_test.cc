@@ -72,10 +72,11 @@ TEST(TuneQuantity, StepsAreOneTwoOrFiveTimesAPowerOfTen) {
   EXPECT_DOUBLE_EQ(round_step(1000.0), 1000.0);
   EXPECT_DOUBLE_EQ(round_step(0.001), 0.001);
   EXPECT_DOUBLE_EQ(round_step(0.0499), 0.02);
-  // 145 ms in 80 to 400 ms: a twentieth is 7.25 ms, a fiftieth of the range 6.4 ms.
-  EXPECT_DOUBLE_EQ(default_step(0.145, 0.08, 0.4, 0.1, display_unit(core::kTime, 0.1)), 5.0);
-  // 0 in -1 to 1 m: 4 cm; in -1000 to 1000 m or without a range no more than the first.
-  EXPECT_DOUBLE_EQ(default_step(0.0, -1.0, 1.0, 0.1, {"m", 1.0}), 0.02);
+  // 145 ms in 80 to 200 ms: a twentieth is 7.25 ms, of the range 6 ms.
+  EXPECT_DOUBLE_EQ(default_step(0.145, 0.08, 0.2, 0.1, display_unit(core::kTime, 0.1)), 5.0);
+  EXPECT_DOUBLE_EQ(default_step(0.145, 0.14, 0.16, 0.1, display_unit(core::kTime, 0.1)), 1.0);
+  // 0 in -0.5 to 0.5 m: 5 cm; in -1000 to 1000 m or without a range no more than the first.
+  EXPECT_DOUBLE_EQ(default_step(0.0, -0.5, 0.5, 0.1, {"m", 1.0}), 0.05);
   EXPECT_DOUBLE_EQ(default_step(0.0, -1000.0, 1000.0, 0.1, {"m", 1.0}), 0.1);
   EXPECT_DOUBLE_EQ(default_step(0.0, 0.0, 0.0, 0.1, {"", 1.0}), 0.1);
 }

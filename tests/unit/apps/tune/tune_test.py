@@ -65,10 +65,14 @@ class Live(unittest.TestCase):
         """What is different in the file."""
 
     @classmethod
+    def more_options(cls):
+        return []
+
+    @classmethod
     def start(cls):
         cls.engine = subprocess.Popen(
-            [BINARY, "run", str(cls.file), f"--lcm={cls.url}", "--realtime", "--for", "100s", "--no-log", "--quiet"],
-            env=cls.environment, cwd=cls.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            [BINARY, "run", str(cls.file), f"--lcm={cls.url}", "--realtime", "--for", "100s", "--no-log", "--quiet",
+             *cls.more_options()], env=cls.environment, cwd=cls.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     @classmethod
     def stop(cls):
@@ -170,6 +174,74 @@ class Commands(Live):
         self.assertTrue(all(0.8 < one["com.pos.z"] < 1.0 and one["lift_time"] > 0.1 for one in samples))
         self.assertEqual(sorted(samples, key=lambda one: one["tick"]), samples)
         self.assertIn("state", self.good("watch", "--for", "10ms").splitlines()[0])
+
+
+    def test_watch_prints_a_ramp_beside_its_times_for_as_long_as_asked(self):
+        begin = self.good("ramp", "gains.single.swing.kp=480", "--over", "8s")
+        tick = int(re.match(r"accepted at tick (\d+)", begin)[1])
+        rows = [json.loads(line) for line in self.good("watch", "gains.single.swing.kp", "--json", "--for",
+                                                       "400ms").splitlines()]
+        self.good("undo", "--over", "1ms")
+        self.assertGreater(len(rows), 10)
+        self.assertLessEqual(rows[-1]["time_s"] - rows[0]["time_s"], 0.4 + 1e-6)
+        self.assertGreater(rows[-1]["time_s"] - rows[0]["time_s"], 0.35)
+        for row in rows:  # 10 a second from 400 on
+            self.assertAlmostEqual(row["gains.single.swing.kp"], 400 + 10 * (row["tick"] - tick) / 1500, delta=0.02)
+
+
+class Saves(Live):
+    """Beside a run with --set, by hands in the file."""
+
+    @classmethod
+    def more_options(cls):
+        return ["--set", "land_time=152ms"]
+
+    def edit(self, old, new):
+        text = self.file.read_text()
+        self.assertIn(old, text)
+        self.file.write_text(text.replace(old, new))
+
+    def test_what_somebody_edited_meanwhile_is_not_overwritten(self):
+        self.good("set", "lift_time=150ms")
+        self.good("save", "--yes")  # of --set, too
+        self.assertIn("land_time: {value: 152 ms", self.file.read_text())
+        self.good("set", "lift_time=155ms")
+        self.good("save", "--yes")  # its own value is nobody's edit
+        self.edit("lift_time: {value: 155 ms", "lift_time: {value: 149 ms")
+        self.good("set", "lift_time=160ms", "land_time=155ms")
+        for how in (["--yes"], ["--dry-run"], ["--to", str(self.file), "--yes"]):
+            lines = self.refused(2, "save", *how)
+            self.assertEqual(len(lines), 1, lines)
+            self.assertIn("lift_time: the file was edited since the last save: it has 149 ms now, had 155 ms", lines[0])
+        self.assertIn("lift_time: {value: 149 ms", self.file.read_text())
+        self.good("save", "land_time", "--yes")  # what is not edited
+        self.assertIn("it has 149 ms now", self.refused(2, "save", "--yes")[0])
+        self.good("save", "--to", str(self.folder / "mine.yaml"), "--yes")
+        self.assertIn("160 ms", (self.folder / "mine.yaml").read_text())
+        self.edit("lift_time: {value: 149 ms", "lift_time: {value: 160 ms")  # as the run has it
+        self.assertIn("has these values already", self.good("save", "--yes"))
+
+
+class Ends(Live):
+    """Last: it ends its run."""
+
+    def test_an_edit_before_the_first_save_is_not_overwritten(self):
+        self.good("set", "lift_time=150ms")
+        text = self.file.read_text()
+        self.file.write_text(text.replace("lift_time: {value: 145 ms", "lift_time: {value: 140 ms"))
+        self.assertIn("lift_time: the file was edited while the run was on: it has 140 ms now, had 145 ms",
+                      self.refused(2, "save", "--yes")[0])
+        self.file.write_text(text)
+        self.good("save", "--yes")
+
+    def test_watch_ends_well_when_the_run_does(self):
+        watcher = subprocess.Popen([BINARY, "tune", "--url", self.url, "--timeout", "20s", "watch", "com.pos.z"],
+                                   env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        watcher.stdout.readline()
+        self.engine.send_signal(signal.SIGINT)
+        _, errors = watcher.communicate(timeout=20)
+        self.assertEqual(watcher.returncode, 0, errors)
+        self.assertRegex(without_session(errors), r"^the run has ended after [\d.]+ s\n$")
 
 
 class TwoEngines(Live):

@@ -249,6 +249,15 @@ TEST(TuneLayout, WithoutUnicodeEverySignIsAscii) {
   }
 }
 
+TEST(TuneLayout, NamesThatAreTooLongKeepTheirEnds) {
+  const std::string pitch = fitted_name("gains.dual.attitude.kd.pitch", 24);
+  EXPECT_THAT(pitch, testing::EndsWith(".kd.pitch"));
+  EXPECT_EQ(text_columns(pitch), 24);
+  EXPECT_NE(pitch, fitted_name("gains.dual.attitude.kd.roll", 24));
+  EXPECT_NE(pitch, fitted_name("gains.single.attitude.kd.pitch", 24));
+  EXPECT_EQ(fitted_name("lift_time", 12), "lift_time   ");
+}
+
 TEST(TuneLayout, ASmallWindowSaysSo) {
   Desk desk;
   EXPECT_THAT(desk.picture(59, 24), HasSubstr("60 x 16 is needed"));

@@ -59,6 +59,39 @@ TEST_F(LcmLink, TelemetryTellsWhatIsActive) {
   EXPECT_FLOAT_EQ(t.tick_us, 1.0F);
 }
 
+// A client may show values beside signals only if it knows that they are of one tick.
+TEST_F(LcmLink, EachTelemetryDuringARampFollowsTheValuesOfItsTick) {
+  begin();
+  const auto ann = client(key_of(1));
+  ASSERT_TRUE(ann->connect(20.0)) << ann->why_not();
+  auto request = set("goal", {1.0, 2.0});
+  request.over = 0.2;
+  const auto answer = ann->ask(request, 20.0);
+  ASSERT_TRUE(answer && answer->accepted);
+  std::vector<std::int64_t> rows, values;
+  EXPECT_TRUE(wait_for([&] {
+    ann->poll(0.1);
+    for (const auto& told : ann->take_values()) values.push_back(told.tick);
+    for (const auto& told : ann->take_telemetry()) rows.push_back(told.tick);
+    return !rows.empty() && rows.back() > answer->tick + 250;  // the ramp has 300 ticks
+  }));
+  std::erase_if(rows, [&](auto tick) { return tick <= answer->tick || tick > answer->tick + 250; });
+  EXPECT_GT(rows.size(), 10U);
+  EXPECT_THAT(values, testing::IsSupersetOf(rows));
+}
+
+TEST_F(LcmLink, TheLastTelemetryTellsThatTheRunHasEnded) {
+  begin();
+  const auto ann = client(key_of(1));
+  ASSERT_TRUE(ann->connect(20.0)) << ann->why_not();
+  EXPECT_TRUE(wait_for([&] { return ann->poll(0.1) > 0 && ann->telemetry().tick > 0; }));
+  end();
+  EXPECT_TRUE(wait_for([&] {
+    ann->poll(0.1);
+    return ann->telemetry().condition == footfall_lcm::telemetry_t::ENDED;
+  }));
+}
+
 TEST_F(LcmLink, WithoutTheKeyNothingIsBelieved) {
   begin();
   const auto eve = client(key_of(2), "eve");
