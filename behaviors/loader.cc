@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "behaviors/blame.h"
 #include "behaviors/check/structure/structure.h"
 #include "behaviors/compile.h"
 #include "behaviors/language/language.h"
@@ -90,43 +91,39 @@ std::unique_ptr<Behavior> load_once(core::YamlNode root, const std::string& path
   return compile_behavior(context, std::move(root), path) ? std::move(behavior) : nullptr;
 }
 
-// The first new error of a load, nullptr if there is none.
-const core::Diagnostic* first_error(const core::Diagnostics& diagnostics, std::size_t from) {
-  for (std::size_t k = from; k < diagnostics.all().size(); ++k) {
-    if (diagnostics.all()[k].severity == core::Severity::error) return &diagnostics.all()[k];
-  }
-  return nullptr;
+// What options.check finds in a behavior, at the values that it follows from.
+core::Diagnostics check_loaded(const Behavior& behavior, const core::YamlNode& root,
+                               const core::YamlLayers& layers, const std::string& path,
+                               const LoadOptions& options, const core::Diagnostics& before,
+                               const core::Diagnostics& of_load) {
+  core::Diagnostics found = before;
+  for (int k = 0; k < of_load.file_count(); ++k) found.add_file(of_load.file(k));
+  options.check(behavior, found);
+  const auto load = [&](const core::YamlNode& tree, const LoadOptions& with,
+                        core::Diagnostics& problems) {
+    core::Diagnostics own = before;
+    const auto trial = load_once(tree, path, with, own);
+    for (int k = 0; k < own.file_count(); ++k) problems.add_file(own.file(k));
+    if (trial != nullptr) options.check(*trial, problems);
+    for (std::size_t k = before.all().size(); trial == nullptr && k < own.all().size(); ++k) {
+      const core::Diagnostic& item = own.all()[k];
+      if (item.severity == core::Severity::error) problems.error(item.mark, item.id, item.text);
+    }
+    return trial != nullptr;
+  };
+  return blame_findings(root, layers, options, before, std::move(found), load);
 }
 
-// A file that is good without --set: each override that spoils it is one error, at that override,
-// not where the file meets its value.
-bool blame_overrides(const core::YamlNode& root, const std::string& path,
-                     const LoadOptions& options, core::Diagnostics& diagnostics) {
-  LoadOptions other = options;
-  other.set.clear();
-  core::Diagnostics without = diagnostics;
-  if (load_once(root, path, other, without) == nullptr) return false;
-  bool found = false;
-  for (const auto& edit : options.set) {
-    core::Diagnostics alone = without;
-    const std::size_t before = alone.all().size();
-    other.set = {edit};
-    load_once(root, path, other, alone);
-    const core::Diagnostic* problem = first_error(alone, before);
-    if (problem == nullptr) continue;
-    found = true;
-    const std::string file = "--set " + edit.first;
-    const bool there = problem->mark.file >= 0 && alone.file(problem->mark.file) == file;
-    const core::Mark mark{diagnostics.add_file(file), there ? problem->mark.line : 1,
-                          there ? problem->mark.column : 1};
-    std::string text = problem->text;
-    if (!there && problem->mark.file >= 0) {
-      text += fmt::format(" (needed at {}:{}:{})", alone.file(problem->mark.file),
-                          problem->mark.line, problem->mark.column);
+void append(core::Diagnostics& to, const core::Diagnostics& from, std::size_t first) {
+  for (int k = 0; k < from.file_count(); ++k) to.add_file(from.file(k));
+  for (std::size_t k = first; k < from.all().size(); ++k) {
+    const core::Diagnostic& item = from.all()[k];
+    if (item.severity == core::Severity::error) {
+      to.error(item.mark, item.id, item.text);
+    } else {
+      to.warning(item.mark, item.id, item.text);
     }
-    diagnostics.error(mark, problem->id, std::move(text));
   }
-  return found;
 }
 
 std::unique_ptr<Behavior> load(core::YamlNode root, const core::YamlLayers& layers,
@@ -134,12 +131,20 @@ std::unique_ptr<Behavior> load(core::YamlNode root, const core::YamlLayers& laye
                                core::Diagnostics& diagnostics) {
   core::Diagnostics trial = diagnostics;
   auto behavior = load_once(root, path, options, trial);
+  const auto with = [&](const core::YamlNode& tree, const LoadOptions& other,
+                        core::Diagnostics& problems) {
+    return load_once(tree, path, other, problems) != nullptr;
+  };
+  if (behavior != nullptr && options.check) {
+    const std::size_t first = diagnostics.all().size();
+    append(trial, check_loaded(*behavior, root, layers, path, options, diagnostics, trial), first);
+  }
   const bool blamed = behavior == nullptr && !options.set.empty() &&
-                      blame_overrides(root, path, options, diagnostics);
+                      blame_overrides(root, options, with, diagnostics);
   if (behavior == nullptr && !blamed && !root.is_null()) {
     trial = core::blame_edits(layers, diagnostics, trial,
-                              [&](core::YamlNode tree, core::Diagnostics& problems) {
-                                load_once(std::move(tree), path, options, problems);
+                              [&](const core::YamlNode& tree, core::Diagnostics& problems) {
+                                with(tree, options, problems);
                               });
   }
   if (!blamed) diagnostics = std::move(trial);

@@ -11,7 +11,8 @@
 
 namespace footfall::behaviors {
 
-// Loads, checks and compiles; nullptr if there were errors. Warnings do not prevent it.
+// Loads, checks and compiles; nullptr if there were errors. Warnings do not prevent it, nor does
+// what options.check finds.
 std::unique_ptr<Behavior> load_behavior(const std::string& path, const LoadOptions& options,
                                         core::Diagnostics& diagnostics);
 // The same from text (tests); `name` stands for the file.

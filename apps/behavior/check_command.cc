@@ -57,25 +57,15 @@ void check_world(const std::string& path, core::Diagnostics& diagnostics) {
   }
 }
 
-// With a robot: checks what the behavior demands of its physics.
-void check_loaded(const behaviors::Behavior* behavior, core::Diagnostics& diagnostics,
-                  const behaviors::PhysicsWorld& world = {}) {
-  if (behavior == nullptr || !behavior->has_robot) return;
-  try {
-    behaviors::check_physics(*behavior, diagnostics, world);
-  } catch (const std::exception& error) {
-    diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
-  }
-}
-
 behaviors::LoadOptions load_options() {
   behaviors::LoadOptions options;
   options.search = search_path();
+  options.check = behaviors::physics_check();
   return options;
 }
 
 void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
-  check_loaded(behaviors::load_behavior(path, load_options(), diagnostics).get(), diagnostics);
+  behaviors::load_behavior(path, load_options(), diagnostics);
 }
 
 // Checks the world that a scenario names: a file beside it, or one found by name; as the scenario's
@@ -116,7 +106,7 @@ void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
   if (diagnostics.has_errors() || scenario.behavior == nullptr) return;
   core::Diagnostics found;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) found.add_file(file);
-  check_loaded(scenario.behavior.get(), found, world);
+  behaviors::physics_check(world)(*scenario.behavior, found);
   for (core::Diagnostic item : found.sorted()) {
     if (item.mark.file >= 0) item.mark.file = diagnostics.add_file(found.file(item.mark.file));
     const bool error = item.severity == core::Severity::error;
@@ -140,9 +130,7 @@ void check_file(const std::string& file, const CheckOptions& options,
                 core::Diagnostics& diagnostics) {
   if (file == "-") {
     const std::string text = core::read_whole_file(file);
-    check_loaded(
-        behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics).get(),
-        diagnostics);
+    behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics);
     return;
   }
   if (!behavior_is_there(file, diagnostics)) return;

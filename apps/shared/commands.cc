@@ -177,12 +177,10 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
   options.search = search_path();
   options.robot = robot;
   options.set = split_settings(set, diagnostics);
+  if (world != nullptr) options.check = behaviors::physics_check(*world);
   std::unique_ptr<behaviors::Behavior> behavior;
   if (!diagnostics.has_errors() && behavior_is_there(path, diagnostics)) {
     behavior = behaviors::load_behavior(find_behavior_file(path), options, diagnostics);
-  }
-  if (behavior != nullptr && world != nullptr) {
-    behaviors::check_physics(*behavior, diagnostics, *world);
   }
   print_diagnostics(diagnostics);
   return diagnostics.has_errors() ? nullptr : std::move(behavior);

@@ -1,11 +1,13 @@
 // Options of the loader besides the file.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "behaviors/compiled/behavior.h"
+#include "core/diagnostics/diagnostics.h"
 
 namespace footfall::behaviors {
 
@@ -20,6 +22,9 @@ struct LoadOptions {
   std::string robot;                // replaces the file's `robot:` if not empty
   std::vector<NativeFunctionInfo> functions;             // registered by the program
   std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, in YAML notation
+  // Further checks of a behavior without errors, as check_physics(). What they find in a base is
+  // reported at the value of an overlay or of --set that it follows from.
+  std::function<void(const Behavior&, core::Diagnostics&)> check;
 };
 
 // Search folders for `base: NAME`: behaviors/library in each folder of `search`.

@@ -17,21 +17,12 @@ namespace {
 
 constexpr std::size_t kMostEdits = 200;  // each one costs a load
 
-// Identifies an error; its text may differ by a suggestion.
+// Identifies a problem; its text may differ by a suggestion.
 using Key = std::tuple<int, int, int, std::string>;
 using Keys = std::set<Key>;
 
 Key key_of(const Diagnostic& item) {
   return {item.mark.file, item.mark.line, item.mark.column, item.id};
-}
-
-Keys errors_of(const Diagnostics& diagnostics, std::size_t from) {
-  Keys keys;
-  for (std::size_t k = from; k < diagnostics.all().size(); ++k) {
-    const Diagnostic& item = diagnostics.all()[k];
-    if (item.severity == Severity::error) keys.insert(key_of(item));
-  }
-  return keys;
 }
 
 YamlNode merge_layers(const YamlLayers& layers, EditCounter& counter) {
@@ -67,9 +58,9 @@ bool covers(const YamlNode& node, Mark mark) {
 class Blame {
  public:
   Blame(const YamlLayers& layers, const Diagnostics& before, const Diagnostics& found,
-        const TreeLoader& load)
-      : layers_(layers), before_(before), found_(found), load_(load) {
-    all_ = errors_of(found, before.all().size());
+        const TreeLoader& load, Blamed what)
+      : layers_(layers), before_(before), found_(found), load_(load), what_(what) {
+    all_ = new_ones(found);
   }
 
   Diagnostics run() {
@@ -82,6 +73,18 @@ class Blame {
   }
 
  private:
+  bool is_meant(const Diagnostic& item) const {
+    return what_ == Blamed::all || item.severity == Severity::error;
+  }
+
+  Keys new_ones(const Diagnostics& diagnostics) const {
+    Keys keys;
+    for (std::size_t k = before_.all().size(); k < diagnostics.all().size(); ++k) {
+      if (is_meant(diagnostics.all()[k])) keys.insert(key_of(diagnostics.all()[k]));
+    }
+    return keys;
+  }
+
   int layer_of(int file) const {
     for (std::size_t k = 0; k < layers_.files.size(); ++k) {
       if (layers_.files[k].mark.file == file) return static_cast<int>(k);
@@ -105,7 +108,7 @@ class Blame {
     counter.left_out = static_cast<int>(index);
     Diagnostics trial = before_;
     load_(merge_layers(layers_, counter), trial);
-    const Keys left = errors_of(trial, before_.all().size());
+    const Keys left = new_ones(trial);
     if (!std::includes(all_.begin(), all_.end(), left.begin(), left.end())) return;
     bool below = false, direct = false;
     std::vector<Key> gone;
@@ -138,7 +141,7 @@ class Blame {
   // The first error that follows from an edit, in a file below it.
   const Diagnostic& first_of(const YamlEdit& edit, const std::vector<Key>& gone) const {
     for (const Diagnostic& item : found_.all()) {
-      if (item.severity != Severity::error || layer_of(item.mark.file) >= edit.layer) continue;
+      if (!is_meant(item) || layer_of(item.mark.file) >= edit.layer) continue;
       if (std::find(gone.begin(), gone.end(), key_of(item)) != gone.end()) return item;
     }
     return item_of(gone.front());
@@ -154,8 +157,8 @@ class Blame {
       text = fmt::format("'{}' is removed: {}", edit.path, text);
     }
     const std::string more = count > 1 ? fmt::format(" and {} more", count - 1) : "";
-    return text + fmt::format(" (needed at {}:{}:{}{})", found_.file(first.mark.file),
-                              first.mark.line, first.mark.column, more);
+    const char* const how = what_ == Blamed::all ? "found" : "needed";
+    return text + fmt::format(" ({} at {}{})", how, found_.place_text(first.mark), more);
   }
 
   Diagnostics result() const {
@@ -163,23 +166,29 @@ class Blame {
     for (int k = 0; k < found_.file_count(); ++k) out.add_file(found_.file(k));
     for (const auto& [index, gone] : blamed_) {
       const Diagnostic& first = first_of(edits_[index], gone);
-      out.error(edits_[index].mark, first.id, text_of(edits_[index], first, gone.size()));
+      add(out, first, edits_[index].mark, text_of(edits_[index], first, gone.size()));
     }
     for (std::size_t k = before_.all().size(); k < found_.all().size(); ++k) {
       const Diagnostic& item = found_.all()[k];
-      if (item.severity == Severity::warning) {
-        out.warning(item.mark, item.id, item.text);
-      } else if (!explained_.contains(key_of(item))) {
-        out.error(item.mark, item.id, item.text);
-      }
+      if (is_meant(item) && explained_.contains(key_of(item))) continue;
+      add(out, item, item.mark, item.text);
     }
     return out;
+  }
+
+  static void add(Diagnostics& out, const Diagnostic& like, Mark mark, const std::string& text) {
+    if (like.severity == Severity::error) {
+      out.error(mark, like.id, text);
+    } else {
+      out.warning(mark, like.id, text);
+    }
   }
 
   const YamlLayers& layers_;
   const Diagnostics& before_;
   const Diagnostics& found_;
   const TreeLoader& load_;
+  const Blamed what_;
   Keys all_, explained_;
   std::vector<YamlEdit> edits_;
   std::vector<std::pair<std::size_t, std::vector<Key>>> blamed_;  // edits and their errors
@@ -188,9 +197,9 @@ class Blame {
 }  // namespace
 
 Diagnostics blame_edits(const YamlLayers& layers, const Diagnostics& before,
-                        const Diagnostics& found, const TreeLoader& load) {
+                        const Diagnostics& found, const TreeLoader& load, Blamed what) {
   if (layers.files.size() < 2) return found;
-  return Blame(layers, before, found, load).run();
+  return Blame(layers, before, found, load, what).run();
 }
 
 }  // namespace footfall::core

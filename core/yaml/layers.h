@@ -33,10 +33,13 @@ void warn_lost_items(const std::string& key, const YamlNode& old, const YamlNode
 // A mistake in an overlay is often found in its base, where the wrong value is used or a removed
 // name is missing. `found`: the problems of a load that began with `before`. Errors in a base that
 // are gone without one edit of a file on top are replaced by one error at that edit, which also
-// says where it was found. `load` loads a merged tree and reports to the diagnostics given.
+// says where it was found; with Blamed::all warnings, too. `load` loads a merged tree and reports
+// to the diagnostics given.
 using TreeLoader = std::function<void(YamlNode, Diagnostics&)>;
+enum class Blamed { errors, all };
 Diagnostics blame_edits(const YamlLayers& layers, const Diagnostics& before,
-                        const Diagnostics& found, const TreeLoader& load);
+                        const Diagnostics& found, const TreeLoader& load,
+                        Blamed what = Blamed::errors);
 
 // Loads a file and its bases by `load(root, diagnostics)`, with errors where they were typed.
 // `lists`: with the warnings about lost items.

@@ -25,15 +25,9 @@ std::shared_ptr<const behaviors::Behavior> load_checked(const std::string& path,
                                                         const behaviors::LoadOptions& options,
                                                         const behaviors::PhysicsWorld& world,
                                                         core::Diagnostics& diagnostics) {
-  std::shared_ptr<const behaviors::Behavior> behavior =
-      behaviors::load_behavior(path, options, diagnostics);
-  if (behavior == nullptr || !behavior->has_robot) return behavior;
-  try {
-    behaviors::check_physics(*behavior, diagnostics, world);
-  } catch (const std::exception& error) {
-    diagnostics.error({diagnostics.add_file(behavior->robot.path), 0, 0}, "model", error.what());
-  }
-  return behavior;
+  behaviors::LoadOptions with = options;
+  with.check = behaviors::physics_check(world);
+  return behaviors::load_behavior(path, with, diagnostics);
 }
 
 std::string text_of(const std::string& path) {

@@ -98,6 +98,16 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
   if (!diagnostics.has_errors()) check_live_ranges(behavior, world, diagnostics);
 }
 
+std::function<void(const Behavior&, core::Diagnostics&)> physics_check(const PhysicsWorld& world) {
+  return [world](const Behavior& behavior, core::Diagnostics& diagnostics) {
+    try {
+      check_physics(behavior, diagnostics, world);
+    } catch (const std::exception& error) {
+      diagnostics.error({diagnostics.add_file(behavior.robot.path), 0, 0}, "model", error.what());
+    }
+  };
+}
+
 struct EditedValues::Impl {
   Impl(const Behavior& of, const PhysicsWorld& in)
       : behavior(of),

@@ -4,6 +4,7 @@
 // `footfall check` and `footfall run` call it after the loader.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,10 @@ struct PhysicsWorld {
 // be compiled.
 void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
                    const PhysicsWorld& world = {});
+
+// check_physics() as LoadOptions::check: a model that cannot be compiled is one more error.
+std::function<void(const Behavior&, core::Diagnostics&)> physics_check(
+    const PhysicsWorld& world = {});
 
 // The same checks of a behavior with other values of its parameters and gains: what a live edit or
 // a scenario's would lead to. Keeps a copy of the behavior and its model; not for the tick.

@@ -84,6 +84,18 @@ class Check(Case):
         files = json.loads(self.footfall("check", "--strict", "--json", path).stdout)["files"]
         self.assertEqual((files[0]["ok"], files[0]["diagnostics"][0]["severity"]), (False, "warning"))
 
+    def test_what_physics_finds_in_a_base_is_told_at_the_value_that_it_follows_from(self):
+        path = self.write("o.yaml", "behavior: 1\nbase: balance_best\nparameters:\n  land_time: {value: 151 ms}\n  clearance: {value: 6}\n")
+        result = self.footfall("check", path)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("o.yaml:5:22: error: task 'swing' asks for a foot at a height of 6 m", result.stderr)
+        self.assertRegex(result.stderr, r"\(found at \S*balance_best\.yaml:\d+:\d+\)")
+        self.assertEqual(result.stderr.count("error:"), 1)
+        for setting, kind in (("clearance=6", "error"), ("planners.foot.width_offset=10cm", "warning")):
+            name = setting.split("=")[0]
+            result = self.footfall("run", "balance_best", "--set", "land_time=151ms", "--set", setting, "--for", "10ms", "--no-log", "--quiet")
+            self.assertIn(f"--set {name}:1:1: {kind}: ", result.stderr)
+
     def test_robots_and_worlds(self):
         robot = os.path.join(SOURCE, "robots/hume/robot.yaml")
         world = os.path.join(SOURCE, "sim/worlds/flat.yaml")
