@@ -48,6 +48,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"glob-clash", kError, "two patterns match the same joint"},
     {"glob-unmatched", kError, "a pattern that matches nothing"},
     {"history-loop", kError, "the default of a history state is a history state"},
+    {"idle-force", kError, "an internal force between feet that are never in contact together"},
     {"impossible-fault", kError, "a reaction to a fault that this robot can never have"},
     {"incomplete-gains", kWarning, "kp without kd, or ki without kp"},
     {"key-kind", kError, "a list or map in place of a key"},

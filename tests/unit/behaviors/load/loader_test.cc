@@ -245,7 +245,7 @@ TEST(Loader, OverridesReachGainsAndPlanners) {
 TEST(Loader, AnOverrideReachesOneAxisOfAGainByNameOrNumber) {
   auto options = options_for_tests();
   options.set = {{"gains.single.swing.kp.y", "111"},
-                 {"gains.dual.attitude.kp[0]", "222"},
+                 {"gains.dual.attitude.kp[1]", "222"},
                  {"gains.single.height.kp.z", "333"},
                  {"goal[1]", "0.4 m"}};
   core::Diagnostics diagnostics;

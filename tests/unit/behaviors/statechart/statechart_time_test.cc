@@ -127,9 +127,10 @@ TEST(StatechartTime, AReentryStartsTheClockAnew) {
 }
 TEST(StatechartTime, ADelayThatIsNoTimeRaisesAnErrorAndNeverHolds) {
   Clock clock(
-      "behavior: 1\nparameters: {d: {value: 0 s}}\nmachine:\n"
+      "behavior: 1\nparameters: {d: {value: 1 s}}\nmachine:\n"
       "  transitions: [{on: error.execution, to: caught}]\n"
-      "  states: {a: {after: '= 1 s - 1 s/$d*1 s', to: b}, b: {}, caught: {}}");
+      "  states: {a: {on_entry: [{set: {d: 0 s}}], after: '= 1 s - 1 s/$d*1 s', to: b}, b: {},"
+      " caught: {}}");
   clock.tick(1);
   EXPECT_EQ(clock.active(), "caught");
 }
