@@ -82,6 +82,7 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
     if (diagnostics.has_errors()) return {};
     world.variation = lab::variation_over(scenario, world.variation);
     lab::warn_late_push(scenario, world.variation, diagnostics);
+    lab::warn_alike_seeds(scenario, world.variation, diagnostics);
     const behaviors::Behavior* const behavior = scenario.behavior.get();
     if (behavior != nullptr && behavior->has_robot) {
       check_links_of(world, behavior->robot, diagnostics);

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "apps/shared/commands.h"
+#include "apps/suites/alike_seeds.h"
 #include "core/text/whole_file.h"
 #include "lab/scenario/loader.h"
 #include "lab/scenario/variation.h"
@@ -27,13 +28,6 @@ behaviors::PhysicsWorld load_and_check_world(const std::string& path,
   const bool complete = !diagnostics.has_errors() && behavior != nullptr && behavior->has_robot;
   if (complete) check_links_of(world, behavior->robot, diagnostics);
   return physics_world(world);
-}
-
-// Finds a world beside the file that names it, or by name.
-std::string find_world(const std::string& beside, const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(beside).parent_path();
-  const std::string path = sim::find_world_file((folder / name).string(), {});
-  return path.empty() ? sim::find_world_file(name, search_path()) : path;
 }
 
 // Varied parameters of the world need a file as `base:`, so name the default world.
@@ -58,6 +52,12 @@ void check_scenario_world(const lab::SweepDescription& sweep, core::Diagnostics&
 
 }  // namespace
 
+std::string find_world(const std::string& beside, const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(beside).parent_path();
+  const std::string path = sim::find_world_file((folder / name).string(), {});
+  return path.empty() ? sim::find_world_file(name, search_path()) : path;
+}
+
 PreparedSweep prepare_sweep(lab::SweepDescription sweep, core::Diagnostics& diagnostics) {
   PreparedSweep prepared;
   if (!diagnostics.has_errors()) name_default_world(sweep, diagnostics);
@@ -73,6 +73,7 @@ PreparedSweep prepare_sweep(lab::SweepDescription sweep, core::Diagnostics& diag
   const lab::SweepCheckOptions options = {search_path(), prepared.worlds, load_and_check_world};
   prepared.inputs = lab::check_sweep(sweep, options, diagnostics);
   check_scenario_world(sweep, diagnostics);
+  if (!diagnostics.has_errors()) warn_alike_seeds(sweep, prepared.worlds, diagnostics);
   prepared.sweep = std::move(sweep);
   return prepared;
 }

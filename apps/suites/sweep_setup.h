@@ -19,6 +19,8 @@ struct PreparedSweep {
 PreparedSweep prepare_sweep(lab::SweepDescription sweep, core::Diagnostics& diagnostics);
 // For `footfall check`.
 void check_sweep_file(const std::string& path, core::Diagnostics& diagnostics);
+// Path of a world beside the file that names it, or found by name; empty if absent.
+std::string find_world(const std::string& beside, const std::string& name);
 // Digest of the contents of files, in this order.
 std::string digest_of_files(const std::vector<std::string>& paths);
 

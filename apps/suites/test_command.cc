@@ -14,6 +14,7 @@
 #include "apps/shared/option_value.h"
 #include "apps/shared/output_option.h"
 #include "apps/shared/time_option.h"
+#include "apps/suites/alike_seeds.h"
 #include "core/process/file_lock.h"
 #include "core/process/stop_signals.h"
 #include "core/text/json_text.h"
@@ -315,6 +316,9 @@ int test(const TestOptions& options) {
                options.rerun_failed ? "nothing failed in the last session" : "an empty shard");
     return kGood;
   }
+  core::Diagnostics doubts;
+  warn_alike_seeds(suite.scenarios, doubts);
+  print_diagnostics(doubts);
   const core::FileLock lock = claim_folder(options);
   settings.stop = core::stop_on_signals();
   const StatusLine status;

@@ -49,6 +49,15 @@ struct PlannerInfo {
   core::Mark mark;  // of `kappa`, else of the planner's name
 };
 
+// A time that depends on parameters, where the file uses it.
+struct TimeUse {
+  int expression = -1;
+  int guard = -1;         // condition under which a transition uses it, -1: none
+  bool positive = false;  // must be above 0 s
+  int state = -1;         // that contains it
+  core::Mark mark;
+};
+
 // The statechart's arrays (Chart) and, with a robot, its control.
 struct Behavior : Chart {
   std::string name;  // of the file, without folder and extension
@@ -80,6 +89,7 @@ struct Behavior : Chart {
   std::vector<TaskName> task_names;  // index: TaskInstance::signals
   std::vector<PlannerInfo> planners;
   std::vector<InvokeInfo> invokes;
+  std::vector<TimeUse> times;  // except constants
   std::vector<ScriptFile> scripts;
   ScriptLimits script_limits;
 

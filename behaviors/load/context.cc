@@ -144,13 +144,19 @@ std::optional<double> LoadContext::constant_value(int expression) const {
   return evaluate(behavior.expressions, expression, {});
 }
 
-int LoadContext::compile_time(const core::YamlNode& node, const ValueScope& scope) {
+int LoadContext::compile_time(const core::YamlNode& node, const ValueScope& scope,
+                              const TimeRule& rule) {
   const int expression = compile_value(node, core::kTime, scope);
+  if (expression < 0) return -1;
   const auto value = constant_value(expression);
-  if (value && periods_of(*value, behavior.rate_mhz) < 0) {
+  if (!value) {
+    behavior.times.push_back({expression, rule.guard, rule.positive, scope.state, node.mark});
+  } else if (periods_of(*value, behavior.rate_mhz) < 0) {
     error(node.mark, "out-of-range",
           "expected a time from 0 s to 10^6 s, got " + core::describe(node));
     return -1;
+  } else if (rule.positive && *value <= 0.0) {
+    error(node.mark, "out-of-range", "expected a time above 0 s");
   }
   return expression;
 }

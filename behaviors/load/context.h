@@ -48,7 +48,10 @@ struct GainEntry {
   std::array<bool, 3> by_axis{};   // has values by axis: not for tasks with other axes
   std::vector<std::string> axes;   // axes of the first task that uses it
   bool made = false;
-  bool overlaid = false;  // used by some task, possibly below an inner layer's
+  bool overlaid = false;               // used by some task, possibly below an inner layer's
+  bool in_table = false;               // else written in a task or state
+  std::array<bool, 3> used{};          // by some task
+  std::array<core::Mark, 3> shadow{};  // of the value that a task used instead
 };
 
 // `--set gains.TABLE.TASK.kp.AXIS=VALUE`, or of gains written in a task: waits until the task and
@@ -66,6 +69,19 @@ struct ValueScope {
   const std::vector<std::string>* entry_axes = nullptr;  // inside a task's reference
   int entry_axis = -1;
   const std::vector<core::Dimension>* entry_dimensions = nullptr;
+};
+
+// Further limits of a time.
+struct TimeRule {
+  bool positive = false;  // 0 s is not allowed
+  int guard = -1;         // used only where this condition holds
+};
+
+// The contacts of an internal force, where the file names them.
+struct InternalUse {
+  core::Mark mark;
+  std::string name;     // of the force
+  bool active = false;  // in some state both ends hold
 };
 
 // An event raised by an action.
@@ -103,8 +119,9 @@ struct LoadContext {
   std::unordered_map<std::string, int> event_ids;         // index in Behavior::events
   int built_in_events = 0;  // events below this index are raised by the engine or from outside
   std::vector<std::pair<core::Mark, const char*>> incomplete_gains;  // and the warning
-  std::map<std::pair<const void*, int>, int> reference_sources;      // ReferenceSpec::source
-  std::vector<tasks::TaskType> task_type_of_name;                    // by Behavior::task_names
+  std::vector<InternalUse> internal_uses;
+  std::map<std::pair<const void*, int>, int> reference_sources;  // ReferenceSpec::source
+  std::vector<tasks::TaskType> task_type_of_name;                // by Behavior::task_names
   int expanded_states = 0;
   mutable int state_guesses = 0;  // unknown state names for which a similar name was searched
   bool states_missing = false;    // after an error in a template: a name may belong to it
@@ -135,8 +152,8 @@ struct LoadContext {
   int compile_condition(const core::YamlNode& node, const ValueScope& scope);
   // The value if the expression is constant.
   std::optional<double> constant_value(int expression) const;
-  // Compiles a time; a negative constant is an error.
-  int compile_time(const core::YamlNode& node, const ValueScope& scope);
+  // Compiles a time; a constant out of limits is an error, others are noted in Behavior::times.
+  int compile_time(const core::YamlNode& node, const ValueScope& scope, const TimeRule& rule = {});
 
   // A state by any suffix of its path, see docs/behaviors.md 8.8; -1 and a reason otherwise.
   int find_target(int from, std::string_view name, std::string& why) const;

@@ -25,7 +25,8 @@ void warn_stacks(LoadContext& context) {
     context.behavior.stacks.push_back(entry.key);
     if (contains(context.used_stacks, entry.key)) continue;
     context.absence(entry.key_mark, "unused",
-                    fmt::format("stack '{}' is never used, and not checked", entry.key));
+                    fmt::format("stack '{}' is never used, and not checked{}", entry.key,
+                                core::did_you_mean(entry.key, context.used_stacks)));
   }
 }
 

@@ -12,6 +12,7 @@ constexpr Severity kError = Severity::error;
 constexpr Severity kWarning = Severity::warning;
 
 constexpr auto kIds = std::to_array<DiagnosticInfo>({
+    {"alike-seeds", kWarning, "several seeds where a seed draws nothing: one run many times"},
     {"ambiguous-state", kError, "several states fit the name: write more of its dotted path"},
     {"append", kError, "`KEY+:` needs a list here and a list of that name in the base"},
     {"argument-name", kError,
@@ -48,6 +49,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"glob-clash", kError, "two patterns match the same joint"},
     {"glob-unmatched", kError, "a pattern that matches nothing"},
     {"history-loop", kError, "the default of a history state is a history state"},
+    {"idle-force", kError, "an internal force between feet that are never in contact together"},
     {"impossible-fault", kError, "a reaction to a fault that this robot can never have"},
     {"incomplete-gains", kWarning, "kp without kd, or ki without kp"},
     {"key-kind", kError, "a list or map in place of a key"},
@@ -84,6 +86,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"no-mirror-image", kWarning, "an argument that the robot's symmetry does not exchange"},
     {"no-priority", kWarning, "a task without priority among others that have one"},
     {"no-script", kError, "an unreadable file of `scripts`"},
+    {"no-time", kWarning, "a time that parameters make negative, in a chart without a robot"},
     {"no-value", kWarning,
      "a condition that a state fails in which its signal has no value; an expression that never "
      "has one"},

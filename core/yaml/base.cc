@@ -99,6 +99,15 @@ YamlNode resolve(YamlNode root, const std::string& path, Chain& chain) {
   if (base.is_null()) return {};
   // The first key is the kind of file; a file that begins with `base:` inherits its kind.
   const std::string& first = root.entries.front().key;
+  static const std::vector<std::string> kKinds = {"behavior", "robot", "world", "scenario",
+                                                  "sweep"};
+  if (first != "base" && std::ranges::find(kKinds, first) == kKinds.end() && base.is_map() &&
+      first != base.entries.front().key) {
+    chain.diagnostics.error(
+        root.entries.front().key_mark, "unknown-key",
+        fmt::format("unknown first key '{}'{}", first, did_you_mean_or_list(first, kKinds)));
+    return {};
+  }
   if (!base.is_map() || (first != "base" && first != base.entries.front().key)) {
     chain.diagnostics.error(
         place, "base", fmt::format("'{}' is a file of another kind than '{}'", base_path, first));

@@ -130,9 +130,10 @@ std::optional<std::vector<double>> read_vector(const YamlNode& node, Dimension e
   if (node.is_sequence() && node.items.size() == axes.size()) {
     for (std::size_t i = 0; i < axes.size(); ++i) take(i, node.items[i]);
   } else if (node.is_sequence()) {
-    diagnostics.error(node.mark, "size",
-                      fmt::format("expected {} values ({}), got {}{}", axes.size(),
-                                  fmt::join(axes, ", "), node.items.size(), comma_hint(node)));
+    diagnostics.error(
+        node.mark, "size",
+        fmt::format("expected {} values ({}), got {}{}", axes.size(), fmt::join(axes, ", "),
+                    node.items.size(), node.items.size() > axes.size() ? comma_hint(node) : ""));
     return std::nullopt;
   } else if (node.is_map()) {
     const int errors_before = diagnostics.error_count();

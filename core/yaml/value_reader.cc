@@ -79,9 +79,11 @@ bool is_off(const YamlNode& node) {
 bool check_kind(const YamlNode& root, std::string_view kind, int newest, Diagnostics& diagnostics) {
   if (root.is_null()) return false;
   if (!root.is_map() || root.entries.empty() || root.entries.front().key != kind) {
-    const std::string got = root.is_map() && !root.entries.empty()
-                                ? fmt::format("'{}'", root.entries.front().key)
-                                : describe(root);
+    const bool key = root.is_map() && !root.entries.empty();
+    const std::string got =
+        key ? fmt::format("'{}'{}", root.entries.front().key,
+                          did_you_mean(root.entries.front().key, {std::string(kind)}))
+            : describe(root);
     diagnostics.error(root.mark, "kind",
                       fmt::format("not a {} file: expected '{}: {}' as the first key, got {}", kind,
                                   kind, newest, got));

@@ -106,7 +106,9 @@ struct ScenarioDescription {
   // `variation:`, over the world's (model::read_variation); it was read once without problems.
   std::optional<core::YamlNode> variation;
   std::vector<std::uint64_t> seeds{1};
-  double duration = 0.0;  // s
+  core::Mark seeds_mark;      // line 0 if not written
+  bool scripts_draw = false;  // its scripts or those of its behavior use random numbers
+  double duration = 0.0;      // s
   core::Mark duration_mark;
   std::vector<ScriptEntry> script;
   std::vector<behaviors::ScriptFile> scripts;

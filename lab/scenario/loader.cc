@@ -16,6 +16,7 @@
 #include "core/yaml/layers.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"
+#include "lab/scenario/variation.h"
 #include "model/mjcf.h"
 #include "model/robot/description.h"
 #include "model/variation/variation.h"
@@ -46,14 +47,17 @@ std::string find_behavior(const ScenarioContext& context, const YamlNode& node,
   return found == candidates.end() ? std::string() : *found;
 }
 
-// Adds the errors of another file, at their own positions. Its warnings belong to its own check.
+// Adds the errors of another file, at their own positions. Its warnings belong to its own check,
+// except for those about values given with the command.
 void take_errors(ScenarioContext& context, const core::Diagnostics& from) {
   for (core::Diagnostic item : from.sorted()) {
-    if (item.severity != core::Severity::error) continue;
+    const bool error = item.severity == core::Severity::error;
+    if (!error && !item.text.starts_with("--set ")) continue;
     if (item.mark.file >= 0) {
       item.mark.file = context.diagnostics.add_file(from.file(item.mark.file));
     }
-    context.diagnostics.error(item.mark, item.id, item.text);
+    if (error) context.diagnostics.error(item.mark, item.id, item.text);
+    if (!error) context.diagnostics.warning(item.mark, item.id, item.text);
   }
 }
 
@@ -195,7 +199,10 @@ void read_head(ScenarioContext& context, const YamlNode& root) {
     scenario.world_mark = node->mark;
     if (node->mark.file >= 0) scenario.world_from = diagnostics.file(node->mark.file);
   }
-  if (const YamlNode* node = root.find("seeds")) read_seeds(context, *node);
+  if (const YamlNode* node = root.find("seeds")) {
+    read_seeds(context, *node);
+    scenario.seeds_mark = node->mark;
+  }
   if (const YamlNode* node = core::require_key(root, "for", diagnostics)) {
     scenario.duration = read_duration(context, *node).value_or(0.0);
     scenario.duration_mark = node->mark;
@@ -287,6 +294,9 @@ ScenarioDescription load_tree(const YamlNode& root, const std::string& path,
   if (const YamlNode* script = root.find("script")) load_script(context, *script);
   if (const YamlNode* expect = root.find("expect")) load_expectations(context, *expect);
   if (const YamlNode* golden = root.find("golden")) load_golden(context, *golden);
+  scenario.scripts_draw =
+      draws_random(scenario.scripts) ||
+      (scenario.behavior != nullptr && draws_random(scenario.behavior->scripts));
   for (int k = 0; k < diagnostics.file_count(); ++k) scenario.files.push_back(diagnostics.file(k));
   return scenario;
 }

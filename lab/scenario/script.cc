@@ -134,9 +134,9 @@ ScriptedPush read_push(ScenarioContext& context, const YamlNode& node) {
   }
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (const YamlNode* direction = node.find("direction")) {
-    push.direction =
-        core::read_bounded(*direction, core::kNone, -kTurn, kTurn, context.diagnostics, "an angle")
-            .value_or(0.0);
+    push.direction = core::read_bounded(*direction, core::kNone, -kTurn, kTurn, context.diagnostics,
+                                        "an angle (in rad, or with its unit: 90 deg)")
+                         .value_or(0.0);
   }
   return push;
 }
@@ -234,6 +234,18 @@ std::vector<behaviors::SlotValue> read_changes(ScenarioContext& context, const Y
   return changes;
 }
 
+// What begins at a time must end before the run does; at an event or place it may begin too late.
+void check_end(ScenarioContext& context, const YamlNode& node, const ScriptEntry& entry,
+               double lasts) {
+  const double end = context.scenario.duration;
+  constexpr double kRounding = 1e-9;  // s
+  if (entry.moment.kind != Moment::Kind::time || end <= 0.0) return;
+  if (entry.moment.time + lasts <= end + kRounding) return;
+  context.error(node.mark, "out-of-range",
+                fmt::format("{} from {:g} s on ends behind the end of the run, which lasts {:g} s",
+                            core::describe(node), entry.moment.time, end));
+}
+
 // `over` applies to edits, `for` to entries with a duration.
 void read_lasting(ScenarioContext& context, const YamlNode& node, ScriptEntry& entry) {
   const auto misplaced = [&](const char* key, const char* beside) {
@@ -246,10 +258,12 @@ void read_lasting(ScenarioContext& context, const YamlNode& node, ScriptEntry& e
   if (const YamlNode* over = node.find("over")) {
     entry.over =
         core::read_bounded(*over, core::kTime, 0.0, 1e6, context.diagnostics).value_or(0.0);
+    check_end(context, *over, entry, entry.over);
     if (node.find("edit") == nullptr) misplaced("over", "'edit'");
   }
   if (const YamlNode* time = node.find("for")) {
     entry.duration = read_duration(context, *time);
+    check_end(context, *time, entry, entry.duration.value_or(0.0));
     if (node.find("fault") == nullptr && node.find("hold") == nullptr) {
       misplaced("for", node.find("push") == nullptr ? "'fault' or 'hold'"
                                                     : "'fault' or 'hold': a push has its own");
@@ -290,6 +304,9 @@ void read_entry(ScenarioContext& context, const YamlNode& node) {
     const auto choice =
         core::read_choice(*fault, kInjectedFaults, context.diagnostics, "something that fails");
     if (choice) entry.fault = static_cast<InjectedFault>(*choice);
+  }
+  if (const YamlNode* push = node.find("push"); push != nullptr && push->find("for") != nullptr) {
+    check_end(context, *push->find("for"), entry, entry.push->duration);
   }
   read_lasting(context, node, entry);
   context.scenario.script.push_back(std::move(entry));

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lab/scenario/context.h"
 
 namespace footfall::lab {
@@ -55,6 +57,30 @@ void warn_late_push(const ScenarioDescription& scenario, const model::Variation&
                     core::Diagnostics& diagnostics) {
   if (own_push(scenario) != nullptr) return;
   warn_if_late(drawn.push, scenario.duration, scenario.duration_mark, diagnostics);
+}
+
+bool draws_random(const std::vector<behaviors::ScriptFile>& scripts) {
+  return std::ranges::any_of(scripts, [](const behaviors::ScriptFile& script) {
+    return script.text.find("random") != std::string::npos;
+  });
+}
+
+bool seeds_alike(const ScenarioDescription& scenario, const model::Variation& drawn) {
+  return !scenario.scripts_draw && !drawn.depends_on_seed();
+}
+
+std::string alike_seeds_text(std::size_t seeds, const std::string& world) {
+  return fmt::format(
+      "{} seeds are one run {} times: in world '{}' a seed draws nothing, and no "
+      "script does",
+      seeds, seeds, world);
+}
+
+void warn_alike_seeds(const ScenarioDescription& scenario, const model::Variation& drawn,
+                      core::Diagnostics& diagnostics) {
+  if (scenario.seeds.size() < 2 || !seeds_alike(scenario, drawn)) return;
+  diagnostics.warning(scenario.seeds_mark, "alike-seeds",
+                      alike_seeds_text(scenario.seeds.size(), scenario.world));
 }
 
 bool draws_itself(const ScenarioDescription& scenario, const std::vector<std::string>& path) {

@@ -18,6 +18,15 @@ model::Variation variation_over(const ScenarioDescription& scenario, const model
 void warn_late_push(const ScenarioDescription& scenario, const model::Variation& drawn,
                     core::Diagnostics& diagnostics);
 
+// Whether some script uses random numbers.
+bool draws_random(const std::vector<behaviors::ScriptFile>& scripts);
+// Whether all seeds are the same run: neither the draws nor the scripts depend on the seed.
+bool seeds_alike(const ScenarioDescription& scenario, const model::Variation& drawn);
+std::string alike_seeds_text(std::size_t seeds, const std::string& world);
+// Warns of several seeds that are alike.
+void warn_alike_seeds(const ScenarioDescription& scenario, const model::Variation& drawn,
+                      core::Diagnostics& diagnostics);
+
 // Whether the scenario has its own draw of a quantity, so that the world's says nothing. `path`: of
 // the world's value below `variation`, such as {friction, range}.
 bool draws_itself(const ScenarioDescription& scenario, const std::vector<std::string>& path);

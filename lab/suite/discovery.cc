@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "behaviors/load/options.h"
 #include "core/text/whole_file.h"
 #include "core/yaml/glob.h"
 #include "core/yaml/value_reader.h"
@@ -48,11 +49,31 @@ std::string expectation_text(const ScenarioDescription& scenario, const Expectat
   return text + window_text(expectation);
 }
 
+// Why a file of another kind is no test; empty for a scenario, and for a file without a kind, which
+// the loader reports.
+std::string other_kind(const std::string& path, const std::vector<std::string>& search) {
+  const std::string key = first_key(path, behaviors::library_folders(search));
+  for (const char* kind : {"behavior", "robot", "world", "sweep"}) {
+    if (key != kind) continue;
+    return fmt::format("{}:1:1: error: this is a {}, no scenario: `footfall {}` is for it\n", path,
+                       kind,
+                       key == "behavior" ? "run"
+                       : key == "sweep"  ? "sweep"
+                                         : "check");
+  }
+  return {};
+}
+
 SuiteScenario load_one(const std::string& path, const std::vector<std::string>& search) {
   SuiteScenario out;
   out.path = path;
+  out.errors = other_kind(path, search);
+  if (!out.errors.empty()) {
+    out.name = fs::path(path).stem().string();
+    return out;
+  }
   core::Diagnostics diagnostics;
-  const ScenarioDescription scenario = load_scenario(path, {search}, diagnostics);
+  ScenarioDescription scenario = load_scenario(path, {search}, diagnostics);
   out.name = scenario.name.empty() ? fs::path(path).stem().string() : scenario.name;
   out.labels = scenario.labels;
   out.seeds = scenario.seeds;
@@ -73,6 +94,8 @@ SuiteScenario load_one(const std::string& path, const std::vector<std::string>& 
       coverage_map(*scenario.behavior, behavior, scenario.behavior_files));
   out.scripted = !scenario.script.empty();
   if (scenario.golden) out.golden = scenario.golden->path;
+  scenario.behavior.reset();  // large
+  out.source = std::make_shared<const ScenarioDescription>(std::move(scenario));
   return out;
 }
 

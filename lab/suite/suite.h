@@ -12,6 +12,7 @@
 
 #include "lab/judge/coverage.h"
 #include "lab/judge/result.h"
+#include "lab/scenario/description.h"
 
 namespace footfall::lab {
 
@@ -32,7 +33,8 @@ struct SuiteScenario {
   bool scripted = false;  // has a script
   std::string golden;     // path of the golden trace for the first seed; empty: none
   std::string errors;     // load errors; if not empty, the scenario is not run
-  std::shared_ptr<const CoverageMap> map;  // coverage map of its behavior
+  std::shared_ptr<const CoverageMap> map;             // coverage map of its behavior
+  std::shared_ptr<const ScenarioDescription> source;  // without its behavior; null after errors
 };
 
 enum class Verdict : std::uint8_t {

@@ -85,6 +85,13 @@ std::optional<double> Variation::least_friction() const {
 
 double Variation::most_command_delay() const { return command_delay.most(); }
 
+bool Variation::depends_on_seed() const {
+  const auto varies = [](const Spread& spread) { return spread.least() < spread.most(); };
+  return varies(velocity) || varies(joints) || varies(rates) || varies(friction) || varies(mass) ||
+         varies(command_delay) || push.impulse > 0.0 ||
+         std::ranges::any_of(com, [&](const auto& link) { return varies(link.second); });
+}
+
 Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
           std::uint64_t seed) {
   Draw out;

@@ -96,6 +96,7 @@ class Reader {
     const auto value = read_bounded(sd, dimension, 0.0, kInfinity, diagnostics_);
     if (!value) return {};
     const Spread out = {Spread::Kind::normal, *value, 0.0};
+    if (least >= 0.0) return out;  // half of the draws would be below: refuse_normal()
     constexpr double kRounding = 1e-12;
     if (out.least() < least - kRounding || out.most() > most + kRounding) {
       diagnostics_.error(

@@ -64,6 +64,8 @@ struct Variation {
   std::optional<double> least_friction() const;
   // The most command delay that can be added, s; 0: it is not drawn.
   double most_command_delay() const;
+  // Whether two seeds can draw different values.
+  bool depends_on_seed() const;
 };
 
 // `variation:` of a world or a scenario.

@@ -9,6 +9,7 @@
 #include "behaviors/check/physics/configurations.h"
 #include "behaviors/check/physics/parts.h"
 #include "behaviors/check/physics/postures.h"
+#include "behaviors/compiled/times.h"
 #include "core/index.h"
 #include "model/check/check.h"
 
@@ -175,6 +176,12 @@ std::vector<core::Diagnostic> EditedValues::errors(std::span<const double> value
   check_force_feedback(context);
   check_planners(context);
   core::Diagnostics diagnostics;
+  for (const BadTime& time : bad_times(m.behavior)) {
+    diagnostics.error(
+        time.use->mark, "out-of-range",
+        fmt::format("a time in state '{}' {}", m.behavior.states[at(time.use->state)].path,
+                    bad_time_text(time)));
+  }
   findings.report(diagnostics);
   std::vector<core::Diagnostic> errors;
   for (const core::Diagnostic& item : diagnostics.all()) {

@@ -5,7 +5,8 @@
 // is maximised over the joint limits. No false alarm on level ground: tilt, other tasks and other
 // feet only reduce the reachable height.
 // The height of a foot that is in the air, from a start on the ground: its rise above a contact
-// point is maximised in the same way, with the base upright where a task keeps it so.
+// point is maximised in the same way, with the base upright where a task keeps it so. A foot is not
+// sent below the place from which it was lifted.
 // Likewise the base can be above the CoM or a point by no more than a distance that depends on the
 // joints, at a tilt within the robot's limit: a height from which it is still below `limits.height`
 // is a fall.
@@ -20,6 +21,7 @@
 #include <optional>
 #include <tuple>
 
+#include "behaviors/check/physics/configurations.h"
 #include "behaviors/check/physics/parts.h"
 
 namespace footfall::behaviors {
@@ -33,6 +35,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 // of a millimetre of it for legs of a few joints. One percent is added as tolerance.
 constexpr double kSlack = 1.01;
 constexpr int kSweeps = 20;
+constexpr double kPress = 0.02;  // m, into the ground: less presses the foot, and the robot stands
 constexpr double kKeptTilt = 0.1;  // rad, of a base whose roll and pitch are controlled
 
 class ReachCheck {
@@ -139,6 +142,7 @@ class ReachCheck {
     const double lowest = com || swings ? 0.0 : -highest;
     const auto found = outside(axis, lowest, highest);
     if (!found) {
+      if (swings) judge_sink(control, task, axis);
       judge_fall(task, axis, highest);
       return;
     }
@@ -152,6 +156,35 @@ class ReachCheck {
                                  : fmt::format("on {} it can be {:.3g} m at most",
                                                contacts_text(context_.behavior, control.contacts),
                                                highest)));
+  }
+
+  // A foot that stood when the trajectory began, and is sent below the place where it stood. A foot
+  // that is being loaded may press.
+  void judge_sink(const ControlSpec& control, const TaskSpec& task, const AxisSpec& axis) {
+    const ReferenceSpec& reference = task.reference;
+    if (reference.kind != ReferenceSpec::Kind::trajectory || control.transition >= 0) return;
+    if (!dependence_of(context_.behavior, axis.value).entry) return;
+    const auto end = value(axis, 0.0);
+    if (!end || *end >= 0.0 || !begins_on_ground(reference.owner, task.point)) return;
+    context_.findings.add(
+        *end < -kPress ? Severity::error : Severity::warning, axis.value_mark, "out-of-reach", "z",
+        fmt::format("task '{}' asks for a foot at a height of {:.3g} m from where it stood: that "
+                    "is in the ground",
+                    name(task), *end));
+  }
+
+  // Whether the state is entered from a control in which the foot holds or is released.
+  bool begins_on_ground(int state, int foot) {
+    if (!changes_) changes_ = control_changes(context_.behavior);
+    return std::ranges::any_of(*changes_, [&](const ControlChange& change) {
+      if (std::ranges::find(change.entered, state) == change.entered.end()) return false;
+      const ControlSpec& before = context_.behavior.controls[static_cast<std::size_t>(change.from)];
+      if (std::ranges::find(before.contacts, foot) != before.contacts.end()) return true;
+      if (before.transition < 0) return false;
+      const TransitionSpec& spec =
+          context_.behavior.contact_transitions[static_cast<std::size_t>(before.transition)];
+      return !spec.loads && std::ranges::find(spec.contacts, foot) != spec.contacts.end();
+    });
   }
 
   // Whether the point is that of a contact which does not hold.
@@ -291,6 +324,7 @@ class ReachCheck {
   PhysicsContext& context_;
   StaticValues values_;
   std::map<std::pair<int, int>, double> farthest_;
+  std::optional<std::vector<ControlChange>> changes_;     // found when first needed
   std::map<int, double> base_above_;                      // by point
   std::map<std::tuple<int, int, double>, double> rises_;  // by contact, foot and tilt
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "behaviors/check/structure/structure.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -49,8 +50,8 @@ class UnreachableCheck {
       const std::vector<char> before = explained;
       spread(context_, {s}, explained);
       findings.look(state(s).mark, true,
-                    fmt::format("'{}' is never entered: nothing leads to it{}", state(s).path,
-                                followers(s, before, explained)));
+                    fmt::format("'{}' is never entered: nothing leads to it{}{}", state(s).path,
+                                meant(s), followers(s, before, explained)));
     }
     for (int s = 1; s < count(); ++s) {  // another instance of the same text may be reachable
       if (entered_[at(s)] != 0) findings.look(state(s).mark, false, {});
@@ -63,6 +64,18 @@ class UnreachableCheck {
  private:
   int count() const { return static_cast<int>(chart_.states.size()); }
   const StateInfo& state(int s) const { return chart_.states[at(s)]; }
+
+  // A sibling that is entered and has a similar name.
+  std::string meant(int s) {
+    constexpr int kGuesses = 100;  // each one compares with every sibling
+    if (++guesses_ > kGuesses) return {};
+    std::vector<std::string> names;
+    const int parent = state(s).parent;
+    for (int c = parent + 1; c < state(parent).end; c = state(c).end) {
+      if (entered_[at(c)] != 0) names.push_back(state(c).name);
+    }
+    return core::did_you_mean(state(s).name, names);
+  }
 
   // The outermost unreachable state that contains this one.
   int lost_around(int s) const {
@@ -99,6 +112,7 @@ class UnreachableCheck {
   const std::vector<char>& entered_;
   std::vector<int> lost_;
   std::vector<char> led_;  // by state: another unreachable state leads to it
+  int guesses_ = 0;
 };
 
 // States without exit. The state of `safe`, and states reached only from it, may be such.

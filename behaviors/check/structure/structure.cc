@@ -102,6 +102,7 @@ void check_structure(LoadContext& context) {
   check_events(context);
   check_unused(context);
   check_mirror(context);
+  check_times(context);
   check_timing(context);
   const Reach reach = find_reach(context);
   check_reachability(context, reach);

@@ -98,13 +98,14 @@ const core::YamlNode& transition_keys(const LoadContext& context, int transition
 // Whether a transition was created by `mirror`.
 bool made_by_mirror(const LoadContext& context, int transition);
 
-// The checks and their ids; warnings, except for a certain loop.
+// The checks and their ids; warnings, except for a certain loop and impossible times.
 void check_reachability(LoadContext& context, const Reach& reach);  // unreachable, dead-end
 void check_transitions(LoadContext& context, const Reach& reach);   // never-true, re-entry
 void check_shadowed(LoadContext& context, const Reach& reach);      // shadowed
 void check_loops(LoadContext& context, const Reach& reach);         // zero-time-loop, possible-loop
 void check_event_loops(LoadContext& context, const Reach& reach);   // possible-loop
 void check_contacts(LoadContext& context, const Reach& reach);      // contact-before
+void check_times(LoadContext& context);                             // out-of-range, no-time
 void check_timing(LoadContext& context);  // too-short, cut-off, never-asked
 void check_events(LoadContext& context);  // never-raised, unheard
 void check_unused(LoadContext& context);  // unused

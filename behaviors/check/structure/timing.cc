@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "behaviors/check/structure/structure.h"
+#include "behaviors/compiled/static_values.h"
+#include "behaviors/compiled/times.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -118,6 +120,32 @@ class TimingCheck {
 };
 
 }  // namespace
+
+void check_times(LoadContext& context) {
+  const core::YamlNode* parameters = context.section("parameters");
+  for (const BadTime& time : bad_times(context.behavior)) {
+    std::string from;
+    for (const int index : dependence_of(context.behavior, time.use->expression).parameters) {
+      const std::string& name = context.behavior.parameters[at(index)].name;
+      const core::YamlNode* node = parameters == nullptr ? nullptr : parameters->find(name);
+      if (node == nullptr) continue;
+      const core::YamlNode* value = node->find("value");
+      const std::string place = place_of(context, (value == nullptr ? node : value)->mark);
+      // A value of the command is written beside the message.
+      from += fmt::format("{}'{}'{}", from.empty() ? " (from " : " and ", name,
+                          place.starts_with("--") ? "" : " at " + place);
+    }
+    const std::string text =
+        fmt::format("this time {}{}", bad_time_text(time), from + (from.empty() ? "" : ")"));
+    // Without a robot nobody falls, and error.execution may be what the chart is about.
+    if (context.behavior.has_robot) {
+      context.error(time.use->mark, "out-of-range", text);
+    } else {
+      context.warning(time.use->mark, "no-time",
+                      text + "; it never comes, and raises error.execution");
+    }
+  }
+}
 
 void check_timing(LoadContext& context) {
   if (context.behavior.has_robot) TimingCheck(context).report();

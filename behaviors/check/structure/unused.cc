@@ -6,6 +6,7 @@
 #include <set>
 
 #include "behaviors/check/structure/structure.h"
+#include "core/diagnostics/did_you_mean.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -48,14 +49,19 @@ void check_parameters(LoadContext& context) {
   }
   std::set<std::string> watched;
   for (const EventPattern& pattern : context.behavior.patterns) watched.insert(pattern.text);
+  std::vector<std::string> read;  // parameters of which one may be meant
+  for (const core::YamlEntry& entry : parameters->entries) {
+    if (used.contains(entry.key)) read.push_back(entry.key);
+  }
   for (const core::YamlEntry& entry : parameters->entries) {
     if (used.contains(entry.key) || watched.contains("parameter.changed." + entry.key)) continue;
     const int index = context.behavior.find_parameter(entry.key);
     if (index < 0 || a_script_names(context, entry.key)) continue;
     const bool set = context.behavior.parameters[at(index)].variable;
     context.warning(entry.key_mark, "unused",
-                    fmt::format("parameter '{}' is {}: nothing reads ${}", entry.key,
-                                set ? "set, but never used" : "never used", entry.key));
+                    fmt::format("parameter '{}' is {}: nothing reads ${}{}", entry.key,
+                                set ? "set, but never used" : "never used", entry.key,
+                                core::did_you_mean(entry.key, read)));
   }
 }
 
@@ -102,7 +108,8 @@ void check_torque_loops(LoadContext& context) {
     const auto& used = context.used_torque_loops;
     if (std::find(used.begin(), used.end(), entry.key) != used.end()) continue;
     context.warning(entry.key_mark, "unused",
-                    fmt::format("torque_loop table '{}' is never used", entry.key));
+                    fmt::format("torque_loop table '{}' is never used{}", entry.key,
+                                core::did_you_mean(entry.key, used)));
   }
 }
 
@@ -116,7 +123,8 @@ void check_planners(LoadContext& context) {
   for (const core::YamlEntry& entry : planners->entries) {
     if (asked.contains(entry.key)) continue;
     context.warning(entry.key_mark, "unused",
-                    fmt::format("no state invokes planner '{}': it never plans", entry.key));
+                    fmt::format("no state invokes planner '{}': it never plans{}", entry.key,
+                                core::did_you_mean(entry.key, {asked.begin(), asked.end()})));
   }
 }
 

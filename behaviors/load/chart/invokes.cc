@@ -69,7 +69,7 @@ void read_with(LoadContext& context, const core::YamlNode& node, const ValueScop
   if (stance != nullptr) invoke.stance = context.require_contact(*stance);
   if (swing != nullptr) invoke.swing = context.require_contact(*swing);
   if (switch_in != nullptr) {
-    invoke.switch_in = context.compile_value(*switch_in, core::kTime, scope);
+    invoke.switch_in = context.compile_time(*switch_in, scope);
   }
   if (invoke.stance >= 0 && invoke.stance == invoke.swing) {
     context.error(swing->mark, "same-foot", "stance and swing are the same foot");
@@ -97,11 +97,7 @@ void load_invoke(LoadContext& context, const core::YamlNode& node, int state) {
     invoke.at = context.behavior.expressions.add_constant(0.0, core::kTime);
   }
   if (const auto* every = node.find("every")) {
-    invoke.every = context.compile_time(*every, scope);
-    const auto value = context.constant_value(invoke.every);
-    if (value && *value <= 0.0) {
-      context.error(every->mark, "out-of-range", "`every` must be above 0 s");
-    }
+    invoke.every = context.compile_time(*every, scope, {.positive = true});
   }
   if (const auto* deadline = node.find("deadline")) {
     invoke.deadline = context.compile_time(*deadline, scope);

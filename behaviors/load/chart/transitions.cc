@@ -57,7 +57,9 @@ void load_transition(LoadContext& context, int state, const core::YamlNode& node
     load_patterns(context, state, *on, index);
   }
   if (when != nullptr) transition.guard = context.compile_condition(*when, scope);
-  if (after != nullptr) transition.after = context.compile_time(*after, scope);
+  if (after != nullptr) {
+    transition.after = context.compile_time(*after, scope, {.guard = transition.guard});
+  }
   if (to != nullptr) transition.targets = load_targets(context, state, *to);
   if (const auto* internal = node.find("internal")) {
     transition.internal = core::read_bool(*internal, context.diagnostics).value_or(false);

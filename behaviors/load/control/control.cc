@@ -55,6 +55,7 @@ class ControlLoader {
       }
       behavior_.controls[static_cast<std::size_t>(id)] = std::move(control);
     }
+    report_idle_internals(context_);
     warn_incomplete_gains(context_);
     make_unused_gains(context_);
   }

@@ -9,6 +9,7 @@
 #include "behaviors/language/language.h"
 #include "behaviors/load/control/steps.h"
 #include "core/diagnostics/did_you_mean.h"
+#include "core/text/dotted_name.h"
 #include "core/yaml/glob.h"
 
 namespace footfall::behaviors {
@@ -163,8 +164,10 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
       refuse_gain_settings(context, info);
       continue;
     }
+    const int before = context.diagnostics.error_count();
     auto values = read_values(context, *node, kDimensions[k], use);
     if (!values || values->empty()) continue;
+    const bool good = context.diagnostics.error_count() == before;
     info.slot = static_cast<int>(behavior.values.size());
     info.size = static_cast<int>(values->size());
     info.gain = true;
@@ -175,7 +178,7 @@ void make_slots(LoadContext& context, GainEntry& entry, const GainAxes& use) {
       info.max = (*range)[1];
       info.live = true;
     }
-    check_values(context, *node, info, *values);
+    if (good) check_values(context, *node, info, *values);
     entry.by_axis[k] = apply_gain_settings(context, info, use, *values);
     entry.slots[k] = info.slot;
     entry.sizes[k] = info.size;
@@ -230,6 +233,7 @@ void load_gains(LoadContext& context) {
       entry.made = !check_entry(context, task.value);  // on error, no slots are created
       entry.node = &task.value;
       entry.name = name;
+      entry.in_table = true;
     }
   }
 }
@@ -306,11 +310,41 @@ void warn_incomplete_gains(LoadContext& context) {
   }
 }
 
+// The name that was perhaps meant by an unused entry: of a table that some task uses, or of another
+// task in the same table.
+std::string meant_gains(const LoadContext& context, const GainEntry& unused) {
+  const std::vector<std::string> parts = core::split_dots(unused.name);
+  std::vector<std::string> tables, entries;
+  for (const auto& [name, entry] : context.gain_entries) {
+    if (!entry.overlaid || !entry.in_table) continue;
+    const std::vector<std::string> other = core::split_dots(name);
+    (other[1] == parts[1] ? entries : tables).push_back(other[1] == parts[1] ? other[2] : other[1]);
+  }
+  return entries.empty() ? core::did_you_mean(parts[1], tables)
+                         : core::did_you_mean(parts[2], entries);
+}
+
+// Warns about values of an entry that an inner layer's hide from every task.
+void warn_shadowed_gains(LoadContext& context, const GainEntry& entry) {
+  for (std::size_t k = 0; k < kGainNames.size(); ++k) {
+    const core::YamlNode* value = entry.node->find(kGainNames[k]);
+    const core::Mark shadow = entry.shadow[k];
+    if (value == nullptr || entry.used[k] || shadow.file < 0) continue;
+    const std::string name =
+        entry.in_table ? entry.name + "." + kGainNames[k] : std::string("this ") + kGainNames[k];
+    context.absence(value->mark, "unused",
+                    fmt::format("no task uses {}: the value at {}:{}:{} takes precedence", name,
+                                context.diagnostics.file(shadow.file), shadow.line, shadow.column));
+  }
+}
+
 void make_unused_gains(LoadContext& context) {
   for (auto& [name, entry] : context.gain_entries) {
+    if (entry.overlaid) warn_shadowed_gains(context, entry);
     if (entry.made) continue;
     if (!entry.overlaid) {
-      context.absence(entry.node->mark, "unused", fmt::format("no task uses {}", name));
+      context.absence(entry.node->mark, "unused",
+                      fmt::format("no task uses {}{}", name, meant_gains(context, entry)));
     }
     make_slots(context, entry, {});
   }

@@ -71,12 +71,41 @@ std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem&
   return spec;
 }
 
+// Notes whether the pair takes effect here: a force needs both of its ends in contact.
+void note_use(LoadContext& context, const DraftItem& item, const core::YamlNode& between,
+              const std::vector<Pair>& pairs, const std::vector<int>& contacts) {
+  const auto holds = [&](int contact) {
+    return std::ranges::find(contacts, contact) != contacts.end();
+  };
+  const bool active = std::ranges::any_of(
+      pairs, [&](const Pair& pair) { return holds(pair[0]) && holds(pair[1]); });
+  auto& uses = context.internal_uses;
+  const auto same = std::ranges::find_if(
+      uses, [&](const InternalUse& use) { return use.mark.place() == between.mark.place(); });
+  if (same == uses.end()) {
+    uses.push_back({between.mark, item.name, active});
+  } else {
+    same->active |= active;
+  }
+}
+
 bool is_all(const DraftItem& item) {
   const DraftKey* between = item.find("between");
   return between != nullptr && between->node->is_scalar() && between->node->scalar == "all";
 }
 
 }  // namespace
+
+void report_idle_internals(LoadContext& context) {
+  if (context.diagnostics.has_errors()) return;  // possibly their cause
+  for (const InternalUse& use : context.internal_uses) {
+    if (use.active) continue;
+    context.error(use.mark, "idle-force",
+                  fmt::format("internal force '{}' never acts: no state with it has both feet in "
+                              "contact",
+                              use.name));
+  }
+}
 
 std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& draft,
                                             const std::vector<int>& contacts) {
@@ -90,7 +119,9 @@ std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& d
       const std::optional<InternalSpec> force = compile_force(context, item);
       if (!force) continue;
       const core::YamlNode& between = *item.find("between")->node;
-      for (const Pair& pair : read_between(context, between, contacts)) {
+      const std::vector<Pair> pairs = read_between(context, between, contacts);
+      note_use(context, item, between, pairs, contacts);
+      for (const Pair& pair : pairs) {
         if (!named(pair)) {
           out.push_back(*force);
           out.back().contact_a = pair[0];

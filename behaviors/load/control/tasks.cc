@@ -129,6 +129,11 @@ void compile_gains(LoadContext& context, const DraftItem& item, const Draft& dra
     });
     if (source == sources.rend()) continue;
     const core::Mark mark = source->entry->node->find(kGainNames[k])->mark;
+    source->entry->used[k] = true;
+    for (const GainSource& below : sources) {
+      core::Mark& shadow = below.entry->shadow[k];
+      if (shadow.file < 0) shadow = mark;  // the first of several
+    }
     if (type.gains.find(kGainNames[k]) == std::string_view::npos) {
       context.error(mark, "misplaced-key",
                     fmt::format("{}, no {}", type.gains_note, kGainNames[k]));

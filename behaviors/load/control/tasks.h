@@ -29,5 +29,7 @@ int compile_limit(LoadContext& context, const DraftItem& item, const char* name,
 // `contacts`; nothing after an error (internal.cc).
 std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& draft,
                                             const std::vector<int>& contacts);
+// Errors for internal forces that are active in no state.
+void report_idle_internals(LoadContext& context);
 
 }  // namespace footfall::behaviors

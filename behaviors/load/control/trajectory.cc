@@ -63,20 +63,16 @@ std::optional<Shape> read_shape(LoadContext& context, const Words& words) {
   return order->scalar == "3" ? Shape::polynomial3 : Shape::polynomial5;
 }
 
-int compile_owned_time(LoadContext& context, const core::YamlNode& node, int owner) {
+int compile_owned_time(LoadContext& context, const core::YamlNode& node, int owner,
+                       const TimeRule& rule = {}) {
   ValueScope scope;
   scope.state = owner;
-  return context.compile_time(node, scope);
+  return context.compile_time(node, scope, rule);
 }
 
-// Compiles a positive time; checked if constant.
+// Compiles a positive time.
 int compile_span(LoadContext& context, const core::YamlNode& node, int owner) {
-  const int expression = compile_owned_time(context, node, owner);
-  const auto value = context.constant_value(expression);
-  if (value && *value <= 0.0) {
-    context.error(node.mark, "out-of-range", "expected a time above 0 s");
-  }
-  return expression;
+  return compile_owned_time(context, node, owner, {.positive = true});
 }
 
 // `true`, `false`, or the fraction of the trajectory's time during which it follows.

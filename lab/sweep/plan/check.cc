@@ -117,8 +117,11 @@ class Blame {
 
   void take(const Diagnostics& found) {
     for (const core::Diagnostic& item : found.sorted()) {
-      if (item.severity != core::Severity::error) continue;
       const std::string file = item.mark.file >= 0 ? found.file(item.mark.file) : "";
+      if (item.severity != core::Severity::error) {
+        refuse_idle(item, file);
+        continue;
+      }
       std::string text = item.text;
       for (std::size_t a = 0; a < sweep_.axes.size(); ++a) {
         const std::string said = "--set " + sweep_.axes[a].name;
@@ -137,6 +140,17 @@ class Blame {
   }
 
  private:
+  // Refuses an axis whose values change nothing; its warning would be lost among the runs.
+  void refuse_idle(const core::Diagnostic& item, const std::string& file) {
+    for (const SweepAxis& axis : sweep_.axes) {
+      const std::string said = fmt::format("--set {} changes nothing", axis.name);
+      if (!item.text.starts_with(said)) continue;
+      const std::string text = item.text.substr(std::string_view("--set ").size());
+      diagnostics_.error(
+          axis.mark, "unknown-setting",
+          fmt::format("{} ({}:{}:{})", text, file, item.mark.line, item.mark.column));
+    }
+  }
   // Reports an error in a derived file, or at the place where a value is used.
   void elsewhere(const core::Diagnostic& item, const std::string& file, const std::string& text) {
     const bool world = file == target_.world, script = file == target_.path;

@@ -164,6 +164,7 @@ void read_sweep_seeds(SweepReader& reader, const YamlNode& root) {
   const YamlNode* node = root.find("seeds");
   if (node == nullptr) return;
   auto& seeds = reader.sweep.seeds;
+  reader.sweep.seeds_mark = node->mark;
   if (node->is_scalar()) {
     const auto parsed = parse_seeds(node->scalar);
     const bool list = node->scalar.find(',') != std::string::npos;  // in a file: `[1, 2]`

@@ -52,6 +52,7 @@ struct SweepDescription {
   std::vector<core::Mark> world_marks;
   std::vector<SweepFault> faults = {SweepFault{}};
   std::vector<std::uint64_t> seeds;
+  core::Mark seeds_mark;
   std::string duration;      // as written; empty: the scenario's
   double duration_s = 20.0;  // s
   double timeout = 0.0;      // s of wall time; 0: derived from the duration

@@ -13,6 +13,7 @@
 #include "behaviors/loader.h"
 #include "core/diagnostics/ids.h"
 #include "lab/scenario/loader.h"
+#include "lab/scenario/variation.h"
 #include "model/robot/description.h"
 #include "sim/world/description.h"
 #include "tests/language/mistakes/cases.h"
@@ -58,6 +59,18 @@ std::vector<MistakeCase> all_cases() {
   return cases;
 }
 
+// A scenario and, if it has no errors, its draws in its world, as `footfall check` does.
+void load_scenario(const std::string& path, core::Diagnostics& diagnostics) {
+  const auto scenario = lab::load_scenario(path, {{FOOTFALL_SOURCE_DIR}}, diagnostics);
+  if (diagnostics.has_errors()) return;
+  core::Diagnostics of_world;
+  auto world =
+      sim::load_world(sim::find_world_file(scenario.world, {FOOTFALL_SOURCE_DIR}), of_world);
+  world.variation = lab::variation_over(scenario, world.variation);
+  lab::warn_late_push(scenario, world.variation, diagnostics);
+  lab::warn_alike_seeds(scenario, world.variation, diagnostics);
+}
+
 void load(const std::string& path, const std::string& text,
           const std::vector<std::pair<std::string, std::string>>& set,
           core::Diagnostics& diagnostics) {
@@ -67,7 +80,7 @@ void load(const std::string& path, const std::string& text,
     const auto world = sim::load_world(path, diagnostics);
     if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
   } else if (text.starts_with("scenario: 1\n")) {
-    lab::load_scenario(path, {{FOOTFALL_SOURCE_DIR}}, diagnostics);
+    load_scenario(path, diagnostics);
   } else {
     behaviors::LoadOptions options;
     options.search = {FOOTFALL_SOURCE_DIR};

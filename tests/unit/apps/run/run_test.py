@@ -180,6 +180,15 @@ class BadInput(Case):
         result = self.run_it("balance_best", "--set", "height=0.95m", "--for", "10ms")
         self.assertRegex(result.stderr, r"balance_best.yaml:\d+:\d+: warning: --set height changes nothing: the entry of 'sway'")
 
+    def test_set_of_a_time_below_zero_is_refused(self):
+        self.refused(self.run_it("balance_best", "--set", "sway_time=-400ms"), 2, "--set sway_time:1:1",
+                     "is -400 ms: expected a time from 0 s")
+
+    def test_a_list_of_too_few_gains_is_no_decimal_comma(self):
+        result = self.run_it("balance", "--set", "gains.single.swing.kp=[300,200]")
+        self.refused(result, 2, "expected 3 values (x, y, z), got 2")
+        self.assertNotIn("comma", result.stderr)
+
     def test_an_edit_that_set_would_refuse_is_refused_when_the_scenario_is_loaded(self):
         text = ("scenario: 1\nbehavior: balance_best\nfor: 1 s\nscript:\n  - {at: 100 ms, edit: {lift_time: 190 ms}}\n"
                 "  - {at: 200 ms, edit: {land_time: %s}}\nexpect: [{never: in(limp)}]\n")

@@ -66,6 +66,25 @@ class Case(command.Case):
         return {s["name"]: [r["verdict"] for r in s["runs"]] for s in self.session["scenarios"]}
 
 
+class Files(Case):
+    def test_a_behavior_is_told_to_be_no_scenario(self):
+        (self.folder / "mine.yaml").write_text("base: balance_best\nparameters: {clearance: {value: 5 cm}}\n")
+        result = self.footfall("mine.yaml")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("mine.yaml:1:1: error: this is a behavior, no scenario", result.stdout)
+
+    def test_seeds_that_draw_nothing_are_warned_of(self):
+        path = self.scenario("one", "pass", "1..3", more="world: ideal\n")
+        result = self.footfall()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(path + ":4:8: warning: 3 seeds are one run 3 times", result.stderr)
+        self.assertEqual(self.footfall("--seeds", "2").stderr, "")
+        random = self.folder / "tests/runs/regression/random.lua"
+        random.write_text("function roll() return math.random() end\n")
+        self.scenario("one", "pass", "1..3", more="world: ideal\nscripts: random.lua\n")
+        self.assertEqual(self.footfall().stderr, "")
+
+
 class Children(Case):
     def test_all_good_is_exit_0_and_leaves_no_logs(self):
         self.scenario("one", "pass", "1..3")

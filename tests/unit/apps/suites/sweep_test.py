@@ -48,6 +48,30 @@ class SweepCase(Case):
         return path.read_text().splitlines() if path.exists() else []
 
 
+class Refused(SweepCase):
+    def test_an_axis_that_the_start_overwrites_is_refused(self):
+        self.sweep("--vary", "height=[0.8, 0.9]", "--seeds", "1", expect=2)
+        self.assertRegex(self.stderr, r"error: height changes nothing: the entry of 'sway' sets 'height'.*balance_best.yaml:\d+")
+        self.assertEqual(self.starts(), [])
+
+    def test_a_time_below_zero_is_refused_at_its_value(self):
+        self.sweep("--vary", "sway_time=[-1 s, 1 s]", expect=2)
+        self.assertIn("--vary sway_time:1:", self.stderr)
+        self.assertIn("is -1 s: expected a time from 0 s", self.stderr)
+
+    def test_seeds_that_draw_nothing_are_warned_of_and_others_are_not(self):
+        said = "2 seeds are one run 2 times: in world 'ideal' a seed draws nothing"
+        self.sweep("--worlds", "ideal", "--seeds", "1..2")
+        self.assertIn(said, self.stderr)
+        self.environment["FAKE_LOG"] = str(self.folder / "others")
+        self.out = self.folder / "out2"
+        self.sweep("--worlds", "flat", "--seeds", "1..2")
+        self.assertEqual(self.stderr, "")
+        self.out = self.folder / "out3"
+        self.sweep("--worlds", "ideal", "--seeds", "1")
+        self.assertEqual(self.stderr, "")
+
+
 class Children(SweepCase):
     def test_each_end_of_a_child_is_a_recorded_result_and_no_other_run_suffers(self):
         self.environment["FAKE_ACTS"] = "crash@2 fall@3 garbage@4 input@5 machine@6 hang@7"

@@ -39,6 +39,24 @@ TEST(LiveRanges, TheGoodPartOfARangeIsNamed) {
               ContainsRegex("only 80 ms to 21(4.*|5) ms of the range of 'land_time'"));
 }
 
+TEST(LiveRanges, APartInWhichATimeIsNegativeIsNamed) {
+  const std::string both =
+      findings(*derived("  dual_time: {value: 16 ms, range: [-10 ms, 40 ms], live: true}\n"));
+  EXPECT_THAT(both, ContainsRegex("only (-0\\.|0|0\\.).* ms to 40 ms of the range of 'dual_time'"));
+  EXPECT_THAT(both, HasSubstr("a time in state 'step.right_foot.dual' is -10 ms"));
+  EXPECT_EQ(findings(*derived("  dual_time: {value: 16 ms, range: [4 ms, 40 ms], live: true}\n")),
+            "");
+}
+
+TEST(LiveRanges, AFootThatStoodIsNotSentIntoTheGround) {
+  EXPECT_THAT(findings(*derived("  clearance: {value: -6 cm}\n")),
+              HasSubstr("task 'swing' asks for a foot at a height of -0.06 m from where it stood"));
+  EXPECT_THAT(findings(*derived("  clearance: {value: 6 cm, range: [-3 cm, 8 cm], live: true}\n")),
+              HasSubstr("of the range of 'clearance'"));
+  EXPECT_THAT(findings(*derived("  clearance: {value: -1 cm}\n")), HasSubstr("in the ground"));
+  EXPECT_EQ(findings(*derived("  clearance: {value: 2 cm}\n")), "");
+}
+
 TEST(LiveRanges, AnEditIsJudgedWithTheOthersAtTheirNewValues) {
   const auto behavior = derived("  goal: {value: [0, 0]}\n");
   behaviors::EditedValues edited(*behavior);

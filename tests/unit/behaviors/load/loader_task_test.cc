@@ -169,6 +169,31 @@ TEST(LoaderTask, BetweenAllIsEveryPairThatHasNoForceOfItsOwn) {
   const auto& own = b->internals[static_cast<std::size_t>(b->controls[2].internals.first)];
   EXPECT_EQ(b->internal_instances[static_cast<std::size_t>(own.instance)], "own");
 }
+TEST(LoaderTask, AForceThatActsInOneOfItsStatesIsGoodAndOneThatNeverDoesIsAnError) {
+  const auto text = [](const std::string& contacts_of_b) {
+    return "behavior: 1\nrobot: hume\nmachine:\n  internal: {t: {between: [right_foot, left_foot], "
+           "reference: 10 N}}\n  states:\n    a: {contacts: [right_foot], after: 1 s, to: b}\n"
+           "    b: {contacts: [" +
+           contacts_of_b + "], after: 1 s, to: a}\n";
+  };
+  EXPECT_EQ(problems(text("right_foot, left_foot")), "");
+  EXPECT_EQ(problems(text("left_foot")),
+            "b.yaml:4:27: error: internal force 't' never acts: no state with it has both feet in "
+            "contact\n");
+}
+TEST(LoaderTask, AGainThatEveryTaskReplacesIsUnusedAndOneThatSomeTaskTakesIsNot) {
+  const auto text = [](const std::string& of_b) {
+    const std::string task = "rest: {type: joint_damping, priority: 1, gains: {kd: 3}}";
+    return "behavior: 1\nrobot: hume\ngains: {t: {rest: {kd: 2}}}\nmachine:\n  contacts: []\n"
+           "  gains: t\n  states:\n    a: {tasks: {" +
+           task + "}, after: 1 s, to: b}\n    b: {tasks: {" + (of_b.empty() ? task : of_b) +
+           "}, after: 1 s, to: a}\n";
+  };
+  EXPECT_EQ(problems(text("rest: {type: joint_damping, priority: 1}")), "");
+  EXPECT_EQ(problems(text("")),
+            "b.yaml:3:24: warning: no task uses gains.t.rest.kd: the value at b.yaml:8:70 takes "
+            "precedence\n");
+}
 TEST(LoaderTask, APairHasOneForce) {
   EXPECT_EQ(problems("behavior: 1\nrobot: hume\nmachine:\n  contacts: [right_foot, left_foot]\n"
                      "  internal:\n    a: {between: [right_foot, left_foot], reference: 1 N}\n"
