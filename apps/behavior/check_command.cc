@@ -47,7 +47,7 @@ void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
 }
 
 void check_world(const std::string& path, core::Diagnostics& diagnostics) {
-  const sim::WorldDescription world = sim::load_world(path, diagnostics);
+  const sim::WorldDescription world = sim::load_world(path, diagnostics, search_path());
   if (diagnostics.has_errors()) return;
   core::Diagnostics refused;  // only refused by `run`: the file itself is correct
   sim::check_supported(world, refused);
@@ -78,7 +78,7 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
   const std::vector<std::string> folders = core::search_from(scenario.world_from, search_path());
   const std::string path = beside.empty() ? sim::find_world_file(scenario.world, folders) : beside;
   if (!path.empty()) {
-    sim::WorldDescription world = sim::load_world(path, diagnostics);
+    sim::WorldDescription world = sim::load_world(path, diagnostics, search_path());
     if (diagnostics.has_errors()) return {};
     world.variation = lab::variation_over(scenario, world.variation);
     lab::warn_late_push(scenario, world.variation, diagnostics);
@@ -134,9 +134,9 @@ void check_file(const std::string& file, const CheckOptions& options,
     behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics);
     return;
   }
-  if (!behavior_is_there(file, diagnostics)) return;
-  const std::string path = find_behavior_file(file);
-  const std::string key = lab::first_key(path, behaviors::library_folders(search_path()));
+  const std::string path = require_named_file(file, diagnostics);
+  if (path.empty()) return;
+  const std::string key = lab::first_key(path, base_folders());
   const auto kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return key == k.key; });
   (kind == std::end(kKinds) ? check_behavior : kind->check)(path, diagnostics);
 }
@@ -202,7 +202,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
       "check", "Checks behavior, robot, world, scenario and sweep files without running them");
   command
       ->add_option("FILE", options->files,
-                   "Behavior files or names, robot, world, scenario and sweep files; - for a "
+                   "Behavior, world and robot files or names, scenario and sweep files; - for a "
                    "behavior on stdin")
       ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");

@@ -28,6 +28,7 @@ struct ConfigOptions {
 // Input data of all answers.
 struct Config {
   core::Diagnostics diagnostics;
+  std::string path;
   core::YamlNode root;
   core::YamlHistory history;
   const core::KeyTable* table = nullptr;
@@ -45,10 +46,10 @@ const core::KeyTable* table_of(const core::YamlNode& root) {
 
 void load(const ConfigOptions& options, Config& config) {
   const auto settings = split_settings(options.set, config.diagnostics);
-  if (!behavior_is_there(options.file, config.diagnostics)) return;
+  config.path = require_named_file(options.file, config.diagnostics);
+  if (config.path.empty()) return;
   config.root =
-      core::load_yaml_with_base(find_behavior_file(options.file), config.diagnostics,
-                                &config.history, behaviors::library_folders(search_path()));
+      core::load_yaml_with_base(config.path, config.diagnostics, &config.history, base_folders());
   if (config.diagnostics.has_errors()) return;
   config.table = table_of(config.root);
   config.behavior = config.table == behaviors::kBehaviorFile.root;
@@ -160,8 +161,8 @@ int explain(const ConfigOptions& options, Config& config) {
   if (!explanation.problem.empty() && config.behavior && options.key.starts_with("machine.")) {
     behaviors::LoadOptions load;
     load.search = search_path();
-    auto state = behaviors::explain_state(config.root, find_behavior_file(options.file), load,
-                                          options.key, config.diagnostics);
+    auto state =
+        behaviors::explain_state(config.root, config.path, load, options.key, config.diagnostics);
     if (config.diagnostics.has_errors()) print_diagnostics(config.diagnostics);
     explanation = std::move(state.explanation);
     made_from = std::move(state.made_from);
@@ -182,7 +183,7 @@ void add_config_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ConfigOptions>();
   CLI::App* command = app.add_subcommand(
       "config", "Prints a file with its bases and --set applied, or the origin of a value");
-  command->add_option("FILE", options->file, "Behavior file or name; robot, world or scenario file")
+  command->add_option("FILE", options->file, "Behavior, world or robot file or name; scenario file")
       ->required();
   auto* explained = command->add_option(
       "--explain", options->key, "A key, with dots: gains.single.swing.kp, machine.states.step");

@@ -46,7 +46,7 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
     }
     return world;
   }
-  world = sim::load_world(file, diagnostics);
+  world = sim::load_world(file, diagnostics, search_path());
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
   std::fputs(diagnostics.to_string().c_str(), stderr);
   if (diagnostics.has_errors()) throw InputError("");

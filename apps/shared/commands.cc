@@ -77,6 +77,32 @@ bool behavior_is_there(const std::string& name, core::Diagnostics& diagnostics) 
   return false;
 }
 
+std::string require_named_file(const std::string& name, core::Diagnostics& diagnostics) {
+  const std::vector<std::string> search = search_path();
+  std::string path = find_behavior_file(name);
+  std::error_code ignored;
+  if (path != name || fs::exists(name, ignored)) return path;
+  path = sim::find_world_file(name, search);
+  if (path.empty()) path = model::find_robot_file(name, search);
+  if (!path.empty()) return path;
+  std::vector<std::string> known = core::names_in(search, "behaviors/library");
+  for (const auto& [place, inside] : {std::pair("sim/worlds", ""), {"robots", "robot.yaml"}}) {
+    for (std::string& other : core::names_in(search, place, inside))
+      known.push_back(std::move(other));
+  }
+  diagnostics.error({diagnostics.add_file(name), 0, 0}, "cannot-read",
+                    "no such file, and no behavior, world or robot of this name" +
+                        core::did_you_mean(fs::path(name).stem().string(), known));
+  return {};
+}
+
+std::vector<std::string> base_folders() {
+  std::vector<std::string> folders = behaviors::library_folders(search_path());
+  for (std::string& folder : sim::world_folders(search_path()))
+    folders.push_back(std::move(folder));
+  return folders;
+}
+
 int tell_error(const std::exception& error, int otherwise) {
   const auto* const files = dynamic_cast<const fs::filesystem_error*>(&error);
   const std::string text =

@@ -77,6 +77,12 @@ std::vector<std::string> installed_folders();
 // found.
 std::string find_behavior_file(const std::string& name);
 
+// The same for a behavior, a world or a robot, in this order; empty, and an error with a
+// suggestion, if there is none.
+std::string require_named_file(const std::string& name, core::Diagnostics& diagnostics);
+// Search folders for `base: NAME` of behaviors and worlds.
+std::vector<std::string> base_folders();
+
 // False, and an error with a suggestion, if there is no such file and none in the library.
 bool behavior_is_there(const std::string& name, core::Diagnostics& diagnostics);
 

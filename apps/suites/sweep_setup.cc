@@ -22,7 +22,7 @@ behaviors::PhysicsWorld load_and_check_world(const std::string& path,
                                              const lab::ScenarioDescription& scenario,
                                              const behaviors::Behavior* behavior,
                                              core::Diagnostics& diagnostics) {
-  sim::WorldDescription world = sim::load_world(path, diagnostics);
+  sim::WorldDescription world = sim::load_world(path, diagnostics, search_path());
   world.variation = lab::variation_over(scenario, world.variation);
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
   const bool complete = !diagnostics.has_errors() && behavior != nullptr && behavior->has_robot;

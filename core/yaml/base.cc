@@ -66,9 +66,10 @@ std::string find_base(const std::string& path, const YamlNode& base, Chain& chai
         if (file->path().extension() == ".yaml") known.push_back(file->path().stem().string());
       }
     }
-    problem += fmt::format(
-        ", and no '{}.yaml' in a behaviors/library here, above, or in the search path{}", name,
-        did_you_mean(name, known));
+    const fs::path place = fs::path(chain.library.front()).lexically_normal();
+    problem += fmt::format(", and no '{}.yaml' in a {} here, above, or in the search path{}", name,
+                           (place.parent_path().filename() / place.filename()).string(),
+                           did_you_mean(name, known));
   }
   chain.diagnostics.error(base.mark, "base", problem);
   return {};

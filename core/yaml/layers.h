@@ -42,13 +42,13 @@ Diagnostics blame_edits(const YamlLayers& layers, const Diagnostics& before,
                         Blamed what = Blamed::errors);
 
 // Loads a file and its bases by `load(root, diagnostics)`, with errors where they were typed.
-// `lists`: with the warnings about lost items.
+// `lists`: with the warnings about lost items. `library`: folders of bases that are named.
 template <typename Load>
 auto load_over_base(const std::string& path, bool lists, Diagnostics& diagnostics, const Load& load,
-                    PrepareMerge prepare = nullptr) {
+                    PrepareMerge prepare = nullptr, const std::vector<std::string>& library = {}) {
   YamlHistory history;
   YamlLayers layers{{}, prepare};
-  YamlNode root = load_yaml_with_base(path, diagnostics, &history, {}, &layers);
+  YamlNode root = load_yaml_with_base(path, diagnostics, &history, library, &layers);
   if (lists) warn_lost_items(history, diagnostics);
   Diagnostics found = diagnostics;
   auto result = load(root, found);

@@ -307,13 +307,20 @@ class WorldLoader {
 
 }  // namespace
 
-WorldDescription load_world(const std::string& path, Diagnostics& diagnostics) {
+std::vector<std::string> world_folders(const std::vector<std::string>& search) {
+  std::vector<std::string> folders;
+  for (const std::string& folder : search) folders.push_back(folder + "/sim/worlds");
+  return folders;
+}
+
+WorldDescription load_world(const std::string& path, Diagnostics& diagnostics,
+                            const std::vector<std::string>& search) {
   return core::load_over_base(
       path, false, diagnostics,
       [&](const YamlNode& root, Diagnostics& problems) {
         return WorldLoader(path, problems).load(root);
       },
-      model::prepare_variation);
+      model::prepare_variation, world_folders(core::search_from(path, search)));
 }
 
 void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {

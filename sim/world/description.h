@@ -101,8 +101,13 @@ struct WorldDescription {
   PhysicsSettings physics;
 };
 
+// Search folders for `base: NAME`: sim/worlds in each folder of `search`.
+std::vector<std::string> world_folders(const std::vector<std::string>& search);
+
 // Loads a world file. Problems are added to diagnostics; the result is valid only without errors.
-WorldDescription load_world(const std::string& path, core::Diagnostics& diagnostics);
+// `search`: folders of sim/worlds/NAME.yaml, after those of the file and above it.
+WorldDescription load_world(const std::string& path, core::Diagnostics& diagnostics,
+                            const std::vector<std::string>& search = {});
 
 // The world of one run: friction, start, control model and delay as drawn.
 WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);

@@ -84,6 +84,18 @@ class Check(Case):
         files = json.loads(self.footfall("check", "--strict", "--json", path).stdout)["files"]
         self.assertEqual((files[0]["ok"], files[0]["diagnostics"][0]["severity"]), (False, "warning"))
 
+    def test_worlds_and_robots_have_names_too(self):
+        for name in ("varied", "hume", "balance"):
+            self.assertEqual(self.footfall("check", name).returncode, 0, name)
+            self.assertEqual(self.footfall("config", name).returncode, 0, name)
+        self.refused(self.footfall("check", "vared"), 2, "no behavior, world or robot of this name", "did you mean 'varied'?")
+        path = self.write("mine.yaml", "world: 1\nbase: varied\nground: {friction: 0.5}\n")
+        self.assertEqual(self.footfall("check", path).returncode, 0)
+        run = self.footfall("run", "balance", "--world", path, "--for", "10ms", "--no-log", "--json")
+        self.assertIn("command_delay_s", json.loads(run.stdout.splitlines()[-1])["variation"], run.stderr)
+        path = self.write("other.yaml", "base: vared\nground: {friction: 0.5}\n")
+        self.refused(self.footfall("run", "balance", "--world", path), 2, "no 'vared.yaml' in a sim/worlds", "did you mean 'varied'?")
+
     def test_what_physics_finds_in_a_base_is_told_at_the_value_that_it_follows_from(self):
         path = self.write("o.yaml", "behavior: 1\nbase: balance_best\nparameters:\n  land_time: {value: 151 ms}\n  clearance: {value: 6}\n")
         result = self.footfall("check", path)
