@@ -237,9 +237,9 @@ TEST_F(YamlFileTest, BasesStackUp) {
 }
 
 TEST_F(YamlFileTest, ABaseIsFoundByNameInALibraryAndBesideFirst) {
-  std::filesystem::create_directories(folder_ / "library");
-  write("library/walk.yaml", "behavior: 1\nx: library\n");
-  const std::vector<std::string> library = {path_of("empty"), path_of("library")};
+  std::filesystem::create_directories(folder_ / "sim/worlds");
+  write("sim/worlds/walk.yaml", "behavior: 1\nx: library\n");
+  const std::vector<std::string> library = {path_of("empty/sim/worlds"), path_of("sim/worlds")};
   const std::string path = write("mine.yaml", "base: walk\n");
   EXPECT_EQ(load_yaml_with_base(path, diagnostics_, nullptr, library).find("x")->scalar, "library");
   write("walk", "behavior: 1\nx: beside\n");
@@ -248,10 +248,9 @@ TEST_F(YamlFileTest, ABaseIsFoundByNameInALibraryAndBesideFirst) {
 
   const std::string wrong = write("wrong.yaml", "base: wlak\n");
   load_yaml_with_base(wrong, diagnostics_, nullptr, library);
-  EXPECT_EQ(diagnostics_.to_string(),
-            wrong + ":1:7: error: no file '" + path_of("wlak") +
-                "', and no 'wlak.yaml' in a behaviors/library here, above, "
-                "or in the search path (did you mean 'walk'?)\n");
+  EXPECT_EQ(diagnostics_.to_string(), wrong + ":1:7: error: no file '" + path_of("wlak") +
+                                          "', and no 'wlak.yaml' in a sim/worlds here, above, "
+                                          "or in the search path (did you mean 'walk'?)\n");
 }
 
 TEST_F(YamlFileTest, CyclesAndMissingBasesAreErrors) {
