@@ -151,6 +151,18 @@ void print_diagnostics(const core::Diagnostics& diagnostics) {
   std::fputs(text.c_str(), stderr);
 }
 
+namespace {
+
+// The same value, or one of the other's parts: `goal` and `goal.x`.
+bool overlap(const std::string& a, const std::string& b) {
+  const std::string& whole = a.size() < b.size() ? a : b;
+  const std::string& part = a.size() < b.size() ? b : a;
+  return part.starts_with(whole) &&
+         (part.size() == whole.size() || part[whole.size()] == '.' || part[whole.size()] == '[');
+}
+
+}  // namespace
+
 std::vector<std::pair<std::string, std::string>> split_settings(const std::vector<std::string>& set,
                                                                 core::Diagnostics& diagnostics) {
   std::vector<std::pair<std::string, std::string>> pairs;
@@ -167,11 +179,15 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
       continue;
     }
     const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
-    const auto before = std::ranges::find(pairs, name, [](const auto& pair) { return pair.first; });
+    const auto before = std::ranges::find_if(
+        pairs, [&name](const auto& pair) { return overlap(pair.first, name); });
     if (before != pairs.end()) {
+      const std::string twice =
+          before->first == name
+              ? fmt::format("'{}' is set twice, to '{}' and to '{}'", name, before->second, value)
+              : fmt::format("'{}' and '{}' are both set", before->first, name);
       diagnostics.error({diagnostics.add_file("--set"), 0, 0}, "set",
-                        fmt::format("'{}' is set twice, to '{}' and to '{}': expected one of them",
-                                    name, before->second, value));
+                        twice + ": expected one of them");
       continue;
     }
     pairs.emplace_back(name, value);

@@ -155,7 +155,6 @@ void set_gain(LoadContext& context, const std::string& name, core::YamlNode valu
     return;
   }
   put_or_replace(*table, parts.back(), std::move(value));
-  std::erase_if(context.gain_settings, [&](const GainSetting& s) { return s.gain == gain; });
 }
 
 // `planners.foot.kappa`, or one value of a list, `.reversal.x` and `.reversal[0]`.

@@ -175,6 +175,8 @@ class BadInput(Case):
     def test_a_name_that_is_set_twice(self):
         self.refused(self.run_it("balance", "--set", "lift_time=150ms", "--set", "lift_time=140ms"), 2,
                      "--set: error: 'lift_time' is set twice, to '150ms' and to '140ms'")
+        for whole, part in (("goal=[0.1, 0]", "goal.x=0.2"), ("gains.single.swing.kp=250", "gains.single.swing.kp[0]=300")):
+            self.refused(self.run_it("balance", "--set", whole, "--set", part), 2, "are both set: expected one of them")
 
     def test_set_of_a_variable_that_the_start_overwrites_is_warned_of(self):
         result = self.run_it("balance_best", "--set", "height=0.95m", "--for", "10ms")
