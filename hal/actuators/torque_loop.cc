@@ -1,15 +1,14 @@
 // Cascaded and direct torque control; see torque_loop.h.
 #include "hal/actuators/torque_loop.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace footfall::hal {
 
-TorqueLoop::TorqueLoop(const TorqueLoopGains& gains, double step, double limit)
-    : gains_(gains), step_(step), limit_(limit), decay_(std::exp(-step / kBlend)) {}
+TorqueLoop::TorqueLoop(const TorqueLoopGains& gains, double step)
+    : gains_(gains), step_(step), decay_(std::exp(-step / kBlend)) {}
 
-double TorqueLoop::command(const TorqueLoopInput& input) const noexcept {
+double TorqueLoop::law(const TorqueLoopInput& input) const noexcept {
   const double error = input.reference - input.torque;
   const double outer = gains_.p * error + torque_integral_;
   if (gains_.type == TorqueLoopGains::Type::cascade) {
@@ -20,10 +19,10 @@ double TorqueLoop::command(const TorqueLoopInput& input) const noexcept {
   return gains_.forward * input.reference + outer - gains_.damping * rate;
 }
 
-double TorqueLoop::update(const TorqueLoopInput& input) noexcept {
-  const double wanted = command(input) + offset_;
-  const double given = limit_ > 0.0 ? std::clamp(wanted, -limit_, limit_) : wanted;
-  const double excess = wanted - given;
+double TorqueLoop::ask(const TorqueLoopInput& input) const noexcept { return law(input) + offset_; }
+
+void TorqueLoop::settle(const TorqueLoopInput& input, double asked, double given) noexcept {
+  const double excess = asked - given;
   const double error = input.reference - input.torque;
   if (gains_.type == TorqueLoopGains::Type::cascade) {
     const double slip = gains_.p * error + torque_integral_ - input.motor_rate;
@@ -31,15 +30,14 @@ double TorqueLoop::update(const TorqueLoopInput& input) noexcept {
   }
   if (excess * error <= 0.0) torque_integral_ += gains_.i * error * step_;
   offset_ *= decay_;
-  return given;
 }
 
 void TorqueLoop::change(const TorqueLoopGains& gains, const TorqueLoopInput& now) noexcept {
-  const double before = command(now) + offset_;
+  const double before = law(now) + offset_;
   if (gains.type != gains_.type || gains.i == 0.0) torque_integral_ = 0.0;
   if (gains.type != gains_.type || gains.velocity_i == 0.0) velocity_integral_ = 0.0;
   gains_ = gains;
-  offset_ = before - command(now);
+  offset_ = before - law(now);
 }
 
 void TorqueLoop::reset() noexcept { torque_integral_ = velocity_integral_ = offset_ = 0.0; }

@@ -4,9 +4,9 @@
 //   cascade   ω_r = P_t e + I_t ∫e,   u = P_v (ω_r − θ') + I_v ∫(ω_r − θ')          (Vallery 2007)
 //   direct    u = F τ_d + P e + I ∫e − D (θ' or θ' − q')
 //
-// e = τ_d − τ_s. P_t in rad/s per N m, I_t in rad/s^2 per N m (Table I with the corrected units,
-// erratum E19); P_v in N m s/rad, I_v in N m/rad; F, P plain numbers; I in 1/s; D in N m s/rad.
-// No allocation; safe for the tick.
+// e = τ_d − τ_s; integrals by Euler's forward rule. P_t in rad/s per N m, I_t in rad/s^2 per N m
+// (Table I with the corrected units, erratum E19); P_v in N m s/rad, I_v in N m/rad; F, P plain
+// numbers; I in 1/s; D in N m s/rad. No allocation; safe for the tick.
 #pragma once
 
 #include <cstdint>
@@ -32,14 +32,15 @@ struct TorqueLoopInput {
 
 class TorqueLoop {
  public:
-  // limit: largest motor torque, N m; 0: unlimited. Integrals stop where they would only push
-  // further against it.
-  TorqueLoop(const TorqueLoopGains& gains, double step, double limit);
+  TorqueLoop(const TorqueLoopGains& gains, double step);
 
-  // The motor torque, N m.
-  double update(const TorqueLoopInput& input) noexcept;
+  // The motor torque for which the law asks, N m.
+  double ask(const TorqueLoopInput& input) const noexcept;
+  // Ends the step: `given` is what of `asked` the motor could produce. Integrals stop where they
+  // would only ask for more than that.
+  void settle(const TorqueLoopInput& input, double asked, double given) noexcept;
 
-  // Other gains from the next update on, for which the motor torque is the same with the same input
+  // Other gains from the next step on, for which the motor torque is the same with the same input
   // (bumpless transfer): the difference is added, and decays with the time constant kBlend.
   void change(const TorqueLoopGains& gains, const TorqueLoopInput& now) noexcept;
   void reset() noexcept;
@@ -48,14 +49,14 @@ class TorqueLoop {
   const TorqueLoopGains& gains() const noexcept { return gains_; }
 
  private:
-  double command(const TorqueLoopInput& input) const noexcept;
+  double law(const TorqueLoopInput& input) const noexcept;
 
   TorqueLoopGains gains_;
-  double step_, limit_;
+  double step_;
   double torque_integral_ = 0.0;    // of e times its gain: in rad/s (cascade) or N m (direct)
   double velocity_integral_ = 0.0;  // N m
   double offset_ = 0.0;             // N m, what is left of a change of gains
-  double decay_;                    // of it, by update
+  double decay_;                    // of it, by step
 };
 
 }  // namespace footfall::hal
