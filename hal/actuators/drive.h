@@ -1,0 +1,88 @@
+// The series-elastic drive of a robot: one actuator with its torque loop a joint, the encoders that
+// the loops see, and the delays between them and the servo. Shared by the backends; the joint's
+// side belongs to the plant. After the constructor nothing allocates; safe for the tick.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "hal/actuators/series_elastic.h"
+#include "hal/actuators/torque_loop.h"
+
+namespace footfall::hal {
+
+struct DriveJoint {
+  SeriesElasticParameters actuator;
+  double nominal_spring = 0.0;  // N m/rad, with which the measured deflection becomes a torque
+  TorqueLoopGains gains;        // at the start
+};
+
+struct DriveSettings {
+  std::vector<DriveJoint> joints;
+  double step = 0.0;          // s, of the torque loops and the rotors
+  int steps = 1;              // of them in one advance()
+  int command_delay = 0;      // steps, from command() to the torque loop
+  int measurement_delay = 0;  // steps, from the encoders to measured()
+  // Resolution of the encoders, rad; 0: exact.
+  double motor_resolution = 0.0, deflection_resolution = 0.0;
+  double rate_cutoff = 0.0;  // Hz, of the motor rate from the encoder, first order; 0: exact rate
+};
+
+// What the servo gets to know of a joint.
+struct DriveMeasurement {
+  double torque = 0.0;        // nominal spring times deflection, N m
+  double motor_torque = 0.0;  // u, N m, mean over the last advance()
+  double spring = 0.0;        // true mean spring torque over the last advance(), N m
+  bool saturated = false;     // the motor gave less than its loop asked for in the last advance()
+};
+
+class SeriesElasticDrive {
+ public:
+  // Throws std::invalid_argument as SeriesElasticActuator, and for steps or delays below 0.
+  explicit SeriesElasticDrive(DriveSettings settings);
+
+  // Springs at rest but for a deflection that carries these torques, N m.
+  void start(std::span<const double> torques);
+  // Torque references of the servo, N m.
+  void command(std::span<const double> references) noexcept;
+  // Other gains of a joint; its motor torque stays continuous.
+  void change_gains(int joint, const TorqueLoopGains& gains) noexcept;
+  // Advances by `steps` steps with the joints' velocities of their beginning, rad/s. `torques`
+  // receives the mean spring torques, which the plant applies over that time, N m.
+  void advance(std::span<const double> joint_rates, std::span<double> torques) noexcept;
+
+  const DriveMeasurement& measured(int joint) const noexcept;
+  const SeriesElasticActuator& actuator(int joint) const noexcept;
+
+ private:
+  struct Joint {
+    Joint(const DriveJoint& of, double step)
+        : actuator(of.actuator, step), loop(of.gains, step), nominal_spring(of.nominal_spring) {}
+    SeriesElasticActuator actuator;
+    TorqueLoop loop;
+    double nominal_spring = 0.0;
+    double reference = 0.0;    // as the loop has it
+    double motor_angle = 0.0;  // rad, since the start
+    double counted = 0.0;      // as the motor's encoder gave it last, rad
+    double rate = 0.0;         // θ' as the loop has it, rad/s
+    TorqueLoopInput seen;      // by the last update
+    DriveMeasurement measured;
+  };
+  // A ring of one value a joint and step.
+  struct Delay {
+    std::vector<double> values;
+    std::size_t length = 1, head = 0;
+  };
+  double through(Delay& delay, std::size_t joint, double value) const noexcept;
+  void step(std::size_t joint, double joint_rate) noexcept;
+  TorqueLoopInput sense(Joint& joint, double joint_rate) const noexcept;
+
+  DriveSettings settings_;
+  std::vector<Joint> joints_;
+  std::vector<double> commanded_;
+  Delay commands_, measurements_;
+  double smoothing_ = 1.0;  // of the motor rate, by step
+};
+
+}  // namespace footfall::hal

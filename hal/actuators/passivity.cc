@@ -1,0 +1,54 @@
+// Closed form and frequency sweep; see passivity.h.
+#include "hal/actuators/passivity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace footfall::hal {
+
+std::complex<double> output_admittance(const TorqueLoopGains& gains,
+                                       const SeriesElasticParameters& actuator, double delay,
+                                       std::complex<double> s) {
+  const std::complex<double> late = std::exp(-s * delay);
+  const std::complex<double> outer = gains.p + gains.i / s;  // of the torque error, −τ_s
+  const std::complex<double> rotor = actuator.rotor * s + actuator.viscous;
+  if (gains.type == TorqueLoopGains::Type::cascade) {
+    const std::complex<double> inner = gains.velocity_p + gains.velocity_i / s;
+    return (1.0 + late * inner * outer) / (rotor + late * inner);
+  }
+  if (gains.damps == TorqueLoopGains::Damping::motor) {
+    return (1.0 + late * outer) / (rotor + late * gains.damping);
+  }
+  // θ' − q' = τ_s'/k.
+  return (1.0 + late * (outer + gains.damping * s / actuator.spring)) / rotor;
+}
+
+double passivity_margin(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator) {
+  const double j = actuator.rotor, b = actuator.viscous;
+  const auto relative = [](double good, double bad) {
+    return good > 0.0 ? (good - bad) / good : good - bad;
+  };
+  if (gains.type == TorqueLoopGains::Type::direct) {
+    const bool of_motor = gains.damps == TorqueLoopGains::Damping::motor;
+    return relative((1.0 + gains.p) * (b + (of_motor ? gains.damping : 0.0)), gains.i * j);
+  }
+  const double at_high = relative((1.0 + gains.velocity_p * gains.p) * (b + gains.velocity_p),
+                                  j * (gains.velocity_p * gains.i + gains.velocity_i * gains.p));
+  if (gains.velocity_i == 0.0) return at_high;
+  return std::min(at_high, relative(gains.velocity_i * gains.p, gains.i * b));
+}
+
+double least_admittance(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator,
+                        double delay, double from, double to, int points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < points; ++k) {
+    const double part = points > 1 ? static_cast<double>(k) / (points - 1) : 0.0;
+    const double w = 2.0 * std::numbers::pi * from * std::pow(to / from, part);
+    least = std::min(least, output_admittance(gains, actuator, delay, {0.0, w}).real());
+  }
+  return least;
+}
+
+}  // namespace footfall::hal

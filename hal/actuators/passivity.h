@@ -1,0 +1,28 @@
+// Passivity of a torque-controlled series-elastic actuator at its output: whether it can only take
+// energy from what it is coupled to (zero torque reference). With a(s) = −θ'/τ_s the port is
+// passive if Re a(jω) ≥ 0 at all ω, since the spring adds s/k. Load time only.
+#pragma once
+
+#include <complex>
+
+#include "hal/actuators/series_elastic.h"
+#include "hal/actuators/torque_loop.h"
+
+namespace footfall::hal {
+
+// a(s), 1/(N m s/rad); `delay`: s, from the measurement to the motor torque.
+std::complex<double> output_admittance(const TorqueLoopGains& gains,
+                                       const SeriesElasticParameters& actuator, double delay,
+                                       std::complex<double> s);
+
+// The closed form, without delay; 0 or more: passive. For `cascade`, with b for viscous friction,
+//   (1 + P_v P_t)(b + P_v) − J (P_v I_t + I_v P_t)  and  I_v (I_v P_t − I_t b)
+// must be 0 or more (hume-facts 6 for b = 0); for `direct` (1 + P)(b + D) − I J, D that on θ' only.
+// The smaller one, of the first relative to its positive part.
+double passivity_margin(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator);
+
+// The least Re a(jω) of a sweep of `points` frequencies from `from` to `to`, Hz, spaced by ratio.
+double least_admittance(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator,
+                        double delay, double from, double to, int points);
+
+}  // namespace footfall::hal

@@ -1,0 +1,45 @@
+// Cascaded and direct torque control; see torque_loop.h.
+#include "hal/actuators/torque_loop.h"
+
+#include <cmath>
+
+namespace footfall::hal {
+
+TorqueLoop::TorqueLoop(const TorqueLoopGains& gains, double step)
+    : gains_(gains), step_(step), decay_(std::exp(-step / kBlend)) {}
+
+double TorqueLoop::law(const TorqueLoopInput& input) const noexcept {
+  const double error = input.reference - input.torque;
+  const double outer = gains_.p * error + torque_integral_;
+  if (gains_.type == TorqueLoopGains::Type::cascade) {
+    return gains_.velocity_p * (outer - input.motor_rate) + velocity_integral_;
+  }
+  const bool of_motor = gains_.damps == TorqueLoopGains::Damping::motor;
+  const double rate = of_motor ? input.motor_rate : input.motor_rate - input.joint_rate;
+  return gains_.forward * input.reference + outer - gains_.damping * rate;
+}
+
+double TorqueLoop::ask(const TorqueLoopInput& input) const noexcept { return law(input) + offset_; }
+
+void TorqueLoop::settle(const TorqueLoopInput& input, double asked, double given) noexcept {
+  const double excess = asked - given;
+  const double error = input.reference - input.torque;
+  if (gains_.type == TorqueLoopGains::Type::cascade) {
+    const double slip = gains_.p * error + torque_integral_ - input.motor_rate;
+    if (excess * slip <= 0.0) velocity_integral_ += gains_.velocity_i * slip * step_;
+  }
+  if (excess * error <= 0.0) torque_integral_ += gains_.i * error * step_;
+  offset_ *= decay_;
+}
+
+void TorqueLoop::change(const TorqueLoopGains& gains, const TorqueLoopInput& now) noexcept {
+  const double before = law(now) + offset_;
+  if (gains.type != gains_.type || gains.i == 0.0) torque_integral_ = 0.0;
+  if (gains.type != gains_.type || gains.velocity_i == 0.0) velocity_integral_ = 0.0;
+  gains_ = gains;
+  offset_ = before - law(now);
+}
+
+void TorqueLoop::reset() noexcept { torque_integral_ = velocity_integral_ = offset_ = 0.0; }
+
+}  // namespace footfall::hal

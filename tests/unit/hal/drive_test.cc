@@ -1,0 +1,238 @@
+// The drive of a robot: delays, encoders, and the response of both kinds of torque loop.
+#include "hal/actuators/drive.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+#include <unsupported/Eigen/MatrixFunctions>
+#include <vector>
+
+#include "tests/support/allocation_guard.h"
+
+namespace footfall::tests {
+namespace {
+
+using hal::DriveSettings;
+using hal::SeriesElasticDrive;
+using hal::TorqueLoopGains;
+using Complex = std::complex<double>;
+
+constexpr double kStep = 1.0 / 12000.0;  // s
+constexpr int kTick = 8;                 // steps of a control period
+const hal::SeriesElasticParameters kKnee{.spring = 415.0, .rotor = 0.0872756, .viscous = 0.5};
+const TorqueLoopGains kCascade{.type = TorqueLoopGains::Type::cascade,
+                               .p = 0.8,
+                               .i = 2.0,
+                               .velocity_p = 25.0,
+                               .velocity_i = 50.0};
+const TorqueLoopGains kDirect{
+    .type = TorqueLoopGains::Type::direct, .p = 20.0, .i = 10.0, .forward = 1.0, .damping = 25.0};
+
+DriveSettings one_joint(const TorqueLoopGains& gains) {
+  DriveSettings settings;
+  settings.joints = {{kKnee, kKnee.spring, gains}};
+  settings.step = kStep;
+  return settings;
+}
+
+TEST(Drive, StartsWithSpringsThatCarryTheTorquesGiven) {
+  SeriesElasticDrive drive(one_joint(kDirect));
+  const std::array<double, 1> torque{12.0};
+  drive.start(torque);
+  EXPECT_DOUBLE_EQ(drive.measured(0).torque, 12.0);
+  EXPECT_DOUBLE_EQ(drive.actuator(0).spring_torque(), 12.0);
+}
+
+TEST(Drive, ACommandArrivesAfterItsDelay) {
+  for (const int delay : {0, 1, 8, 13}) {
+    DriveSettings settings = one_joint(kDirect);
+    settings.command_delay = delay;
+    SeriesElasticDrive drive(settings);
+    const std::array<double, 1> zero{0.0}, torque{10.0};
+    std::array<double, 1> out{};
+    drive.start(zero);
+    for (int k = 0; k < 5; ++k) drive.advance(zero, out);
+    drive.command(torque);
+    for (int k = 0; k < delay; ++k) {
+      drive.advance(zero, out);
+      EXPECT_EQ(drive.measured(0).motor_torque, 0.0) << delay;
+    }
+    drive.advance(zero, out);
+    EXPECT_DOUBLE_EQ(drive.measured(0).motor_torque, 10.0 + 20.0 * 10.0) << delay;
+  }
+}
+
+TEST(Drive, AMeasurementArrivesAfterItsDelay) {
+  DriveSettings settings = one_joint(kDirect);
+  settings.measurement_delay = 5;
+  SeriesElasticDrive late(settings), prompt(one_joint(kDirect));
+  const std::array<double, 1> zero{0.0}, torque{10.0};
+  std::array<double, 1> out{};
+  std::vector<double> measured;
+  for (SeriesElasticDrive* drive : {&late, &prompt}) drive->start(zero), drive->command(torque);
+  for (int k = 0; k < 50; ++k) {
+    late.advance(zero, out);
+    prompt.advance(zero, out);
+    measured.push_back(prompt.measured(0).torque);
+    if (k >= 5) EXPECT_EQ(late.measured(0).torque, measured[static_cast<std::size_t>(k - 5)]);
+  }
+}
+
+TEST(Drive, EncodersCountInTheirResolution) {
+  DriveSettings settings = one_joint(kDirect);
+  settings.deflection_resolution = 0.7 / (1 << 14);  // 14 bit over +-0.35 rad
+  SeriesElasticDrive drive(settings);
+  const std::array<double, 1> zero{0.0}, torque{10.0};
+  std::array<double, 1> out{};
+  drive.start(zero);
+  drive.command(torque);
+  for (int k = 0; k < 1000; ++k) {
+    drive.advance(zero, out);
+    const double counts =
+        drive.measured(0).torque / (kKnee.spring * settings.deflection_resolution);
+    EXPECT_NEAR(counts, std::round(counts), 1e-9);
+  }
+  EXPECT_NEAR(drive.measured(0).torque, drive.actuator(0).spring_torque(),
+              0.5 * kKnee.spring * settings.deflection_resolution + 1e-12);
+}
+
+// The measured torque is the nominal spring's: with another true one it is wrong by their ratio.
+TEST(Drive, AWrongSpringMakesTheMeasuredTorqueWrong) {
+  DriveSettings settings = one_joint(kDirect);
+  settings.joints[0].nominal_spring = 1.03 * kKnee.spring;
+  SeriesElasticDrive drive(settings);
+  const std::array<double, 1> zero{0.0}, torque{10.0};
+  std::array<double, 1> out{};
+  drive.start(zero);
+  drive.command(torque);
+  for (int k = 0; k < 480000; ++k) drive.advance(zero, out);
+  EXPECT_NEAR(drive.measured(0).torque, 10.0,
+              1e-6);  // after 18 of the time constants (1 + F + P)/I
+  EXPECT_NEAR(out[0], 10.0 / 1.03, 1e-6);
+}
+
+// The response of the sampled loop, from its equations at z = exp(j w h): the rotor by the matrix
+// exponential, the integrals by Euler's forward rule, the reference after `delay` steps. x = (θ,
+// θ'); free: the output is an inertia, whose θ, θ' follow.
+Complex sampled_response(const TorqueLoopGains& gains, int delay, double inertia, double hertz) {
+  const bool is_free = inertia > 0.0;
+  const double k = kKnee.spring, j = kKnee.rotor, b = kKnee.viscous;
+  Eigen::Matrix2d a;
+  a << 0.0, 1.0, -k / j, -b / j;
+  // Over a step the joint moves with the velocity v of its beginning: inputs u and v, x = (δ, θ').
+  Eigen::Matrix4d whole = Eigen::Matrix4d::Zero();
+  whole.topLeftCorner<2, 2>() = a;
+  whole(0, 3) = -1.0;
+  whole(1, 2) = 1.0 / j;
+  const Eigen::Matrix4d step = (whole * kStep).exp();
+  // The mean of δ over the step, from one more integral.
+  Eigen::Matrix<double, 5, 5> mean = Eigen::Matrix<double, 5, 5>::Zero();
+  mean.topLeftCorner<4, 4>() = whole;
+  mean(4, 0) = 1.0;
+  const Eigen::Matrix<double, 5, 5> integral = (mean * kStep).exp();
+  const Complex z = std::exp(Complex(0.0, 2.0 * std::numbers::pi * hertz * kStep));
+  const Complex h = kStep / (z - 1.0);  // Euler's forward rule
+  // Unknowns: δ, θ', v, u, mean of τ_s; one equation each, the reference on the right.
+  Eigen::Matrix<Complex, 5, 5> m = Eigen::Matrix<Complex, 5, 5>::Zero();
+  Eigen::Matrix<Complex, 5, 1> right = Eigen::Matrix<Complex, 5, 1>::Zero();
+  for (int row = 0; row < 2; ++row) {
+    m(row, row) += z;
+    m(row, 0) -= step(row, 0);
+    m(row, 1) -= step(row, 1);
+    m(row, 2) -= step(row, 3);
+    m(row, 3) -= step(row, 2);
+  }
+  m(2, 2) = is_free ? z - 1.0 : Complex(1.0);
+  if (is_free) m(2, 4) = -kStep / inertia;
+  const Complex reference = std::pow(z, -delay);
+  const Complex outer = gains.p + gains.i * h;  // of the torque error
+  m(3, 3) = 1.0;
+  if (gains.type == TorqueLoopGains::Type::cascade) {
+    const Complex inner = gains.velocity_p + gains.velocity_i * h;
+    m(3, 0) = inner * outer * k;
+    m(3, 1) = inner;
+    right(3) = inner * outer * reference;
+  } else {
+    m(3, 0) = outer * k;
+    m(3, 1) = gains.damping;
+    right(3) = (gains.forward + outer) * reference;
+  }
+  m(4, 4) = 1.0;
+  m(4, 0) = -k * integral(4, 0) / kStep;
+  m(4, 1) = -k * integral(4, 1) / kStep;
+  m(4, 2) = -k * integral(4, 3) / kStep;
+  m(4, 3) = -k * integral(4, 2) / kStep;
+  return m.partialPivLu().solve(right)(4);
+}
+
+Complex simulated_response(const TorqueLoopGains& gains, int delay, double inertia, double hertz) {
+  DriveSettings settings = one_joint(gains);
+  settings.command_delay = delay;
+  SeriesElasticDrive drive(settings);
+  const int period = static_cast<int>(std::lround(1.0 / (hertz * kStep)));
+  const double w = 2.0 * std::numbers::pi / period;
+  std::array<double, 1> rate{0.0}, torque{}, reference{};
+  drive.start(rate);
+  Complex sum;
+  const int settle = static_cast<int>(3.0 / kStep) / period;
+  for (int k = 0; k < (settle + 1) * period; ++k) {
+    reference[0] = std::cos(w * k);
+    drive.command(reference);
+    drive.advance(rate, torque);
+    if (inertia > 0.0) rate[0] += torque[0] * kStep / inertia;
+    if (k >= settle * period) sum += torque[0] * std::exp(Complex(0.0, -w * k)) * (2.0 / period);
+  }
+  return sum;
+}
+
+TEST(Drive, RespondsAsTheSampledTransferFunctionLockedAndFree) {
+  double worst_gain = 0.0, worst_phase = 0.0;
+  for (const TorqueLoopGains& gains : {kCascade, kDirect}) {
+    for (const double inertia : {0.0, 0.3}) {  // kg m^2; 0: locked
+      for (const int delay : {0, kTick}) {
+        for (const int period : {12000, 2400, 1200, 600, 300, 200, 120}) {  // 1 to 100 Hz
+          const double hertz = 1.0 / (period * kStep);
+          const Complex ratio = simulated_response(gains, delay, inertia, hertz) /
+                                sampled_response(gains, delay, inertia, hertz);
+          worst_gain = std::max(worst_gain, std::abs(std::abs(ratio) - 1.0));
+          worst_phase = std::max(worst_phase, std::abs(std::arg(ratio)));
+        }
+      }
+    }
+  }
+  EXPECT_LT(worst_gain, 0.02);
+  EXPECT_LT(worst_phase, 2.0 * std::numbers::pi / 180.0);
+}
+
+TEST(Drive, ImpossibleSettingsAreRefused) {
+  DriveSettings settings = one_joint(kDirect);
+  settings.steps = 0;
+  EXPECT_THROW(SeriesElasticDrive{settings}, std::invalid_argument);
+  settings = one_joint(kDirect);
+  settings.command_delay = -1;
+  EXPECT_THROW(SeriesElasticDrive{settings}, std::invalid_argument);
+}
+
+TEST(Drive, AnAdvanceAllocatesNothing) {
+  DriveSettings settings = one_joint(kCascade);
+  settings.steps = kTick;
+  settings.command_delay = settings.measurement_delay = kTick;
+  SeriesElasticDrive drive(settings);
+  const std::array<double, 1> rate{0.1}, torque{10.0};
+  std::array<double, 1> out{};
+  drive.start(torque);
+  const AllocationGuard guard;
+  drive.command(torque);
+  drive.advance(rate, out);
+  drive.change_gains(0, kDirect);
+  drive.advance(rate, out);
+  EXPECT_EQ(guard.allocations(), 0);
+}
+
+}  // namespace
+}  // namespace footfall::tests
