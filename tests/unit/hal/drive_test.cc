@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/support/allocation_guard.h"
+#include "tests/unit/hal/actuator_test_support.h"
 
 namespace footfall::tests {
 namespace {
@@ -22,26 +23,24 @@ using hal::SeriesElasticDrive;
 using hal::TorqueLoopGains;
 using Complex = std::complex<double>;
 
-constexpr double kStep = 1.0 / 12000.0;  // s
-constexpr int kTick = 8;                 // steps of a control period
-const hal::SeriesElasticParameters kKnee{.spring = 415.0, .rotor = 0.0872756, .viscous = 0.5};
-const TorqueLoopGains kCascade{.type = TorqueLoopGains::Type::cascade,
-                               .p = 0.8,
-                               .i = 2.0,
-                               .velocity_p = 25.0,
-                               .velocity_i = 50.0};
-const TorqueLoopGains kDirect{
+constexpr int kTick = 8;  // steps of a control period
+const TorqueLoopGains kDriveCascade{.type = TorqueLoopGains::Type::cascade,
+                                    .p = 0.8,
+                                    .i = 2.0,
+                                    .velocity_p = 25.0,
+                                    .velocity_i = 50.0};
+const TorqueLoopGains kDriveDirect{
     .type = TorqueLoopGains::Type::direct, .p = 20.0, .i = 10.0, .forward = 1.0, .damping = 25.0};
 
 DriveSettings one_joint(const TorqueLoopGains& gains) {
   DriveSettings settings;
   settings.joints = {{kKnee, kKnee.spring, gains}};
-  settings.step = kStep;
+  settings.step = kLoopStep;
   return settings;
 }
 
 TEST(Drive, StartsWithSpringsThatCarryTheTorquesGiven) {
-  SeriesElasticDrive drive(one_joint(kDirect));
+  SeriesElasticDrive drive(one_joint(kDriveDirect));
   const std::array<double, 1> torque{12.0};
   drive.start(torque);
   EXPECT_DOUBLE_EQ(drive.measured(0).torque, 12.0);
@@ -50,7 +49,7 @@ TEST(Drive, StartsWithSpringsThatCarryTheTorquesGiven) {
 
 TEST(Drive, ACommandArrivesAfterItsDelay) {
   for (const int delay : {0, 1, 8, 13}) {
-    DriveSettings settings = one_joint(kDirect);
+    DriveSettings settings = one_joint(kDriveDirect);
     settings.command_delay = delay;
     SeriesElasticDrive drive(settings);
     const std::array<double, 1> zero{0.0}, torque{10.0};
@@ -68,9 +67,9 @@ TEST(Drive, ACommandArrivesAfterItsDelay) {
 }
 
 TEST(Drive, AMeasurementArrivesAfterItsDelay) {
-  DriveSettings settings = one_joint(kDirect);
+  DriveSettings settings = one_joint(kDriveDirect);
   settings.measurement_delay = 5;
-  SeriesElasticDrive late(settings), prompt(one_joint(kDirect));
+  SeriesElasticDrive late(settings), prompt(one_joint(kDriveDirect));
   const std::array<double, 1> zero{0.0}, torque{10.0};
   std::array<double, 1> out{};
   std::vector<double> measured;
@@ -79,12 +78,13 @@ TEST(Drive, AMeasurementArrivesAfterItsDelay) {
     late.advance(zero, out);
     prompt.advance(zero, out);
     measured.push_back(prompt.measured(0).torque);
-    if (k >= 5) EXPECT_EQ(late.measured(0).torque, measured[static_cast<std::size_t>(k - 5)]);
+    if (k < 5) continue;
+    EXPECT_EQ(late.measured(0).torque, measured[static_cast<std::size_t>(k - 5)]);
   }
 }
 
 TEST(Drive, EncodersCountInTheirResolution) {
-  DriveSettings settings = one_joint(kDirect);
+  DriveSettings settings = one_joint(kDriveDirect);
   settings.deflection_resolution = 0.7 / (1 << 14);  // 14 bit over +-0.35 rad
   SeriesElasticDrive drive(settings);
   const std::array<double, 1> zero{0.0}, torque{10.0};
@@ -103,7 +103,7 @@ TEST(Drive, EncodersCountInTheirResolution) {
 
 // The measured torque is the nominal spring's: with another true one it is wrong by their ratio.
 TEST(Drive, AWrongSpringMakesTheMeasuredTorqueWrong) {
-  DriveSettings settings = one_joint(kDirect);
+  DriveSettings settings = one_joint(kDriveDirect);
   settings.joints[0].nominal_spring = 1.03 * kKnee.spring;
   SeriesElasticDrive drive(settings);
   const std::array<double, 1> zero{0.0}, torque{10.0};
@@ -129,14 +129,14 @@ Complex sampled_response(const TorqueLoopGains& gains, int delay, double inertia
   whole.topLeftCorner<2, 2>() = a;
   whole(0, 3) = -1.0;
   whole(1, 2) = 1.0 / j;
-  const Eigen::Matrix4d step = (whole * kStep).exp();
+  const Eigen::Matrix4d step = (whole * kLoopStep).exp();
   // The mean of δ over the step, from one more integral.
   Eigen::Matrix<double, 5, 5> mean = Eigen::Matrix<double, 5, 5>::Zero();
   mean.topLeftCorner<4, 4>() = whole;
   mean(4, 0) = 1.0;
-  const Eigen::Matrix<double, 5, 5> integral = (mean * kStep).exp();
-  const Complex z = std::exp(Complex(0.0, 2.0 * std::numbers::pi * hertz * kStep));
-  const Complex h = kStep / (z - 1.0);  // Euler's forward rule
+  const Eigen::Matrix<double, 5, 5> integral = (mean * kLoopStep).exp();
+  const Complex z = std::exp(Complex(0.0, 2.0 * std::numbers::pi * hertz * kLoopStep));
+  const Complex h = kLoopStep / (z - 1.0);  // Euler's forward rule
   // Unknowns: δ, θ', v, u, mean of τ_s; one equation each, the reference on the right.
   Eigen::Matrix<Complex, 5, 5> m = Eigen::Matrix<Complex, 5, 5>::Zero();
   Eigen::Matrix<Complex, 5, 1> right = Eigen::Matrix<Complex, 5, 1>::Zero();
@@ -148,7 +148,7 @@ Complex sampled_response(const TorqueLoopGains& gains, int delay, double inertia
     m(row, 3) -= step(row, 2);
   }
   m(2, 2) = is_free ? z - 1.0 : Complex(1.0);
-  if (is_free) m(2, 4) = -kStep / inertia;
+  if (is_free) m(2, 4) = -kLoopStep / inertia;
   const Complex reference = std::pow(z, -delay);
   const Complex outer = gains.p + gains.i * h;  // of the torque error
   m(3, 3) = 1.0;
@@ -163,10 +163,10 @@ Complex sampled_response(const TorqueLoopGains& gains, int delay, double inertia
     right(3) = (gains.forward + outer) * reference;
   }
   m(4, 4) = 1.0;
-  m(4, 0) = -k * integral(4, 0) / kStep;
-  m(4, 1) = -k * integral(4, 1) / kStep;
-  m(4, 2) = -k * integral(4, 3) / kStep;
-  m(4, 3) = -k * integral(4, 2) / kStep;
+  m(4, 0) = -k * integral(4, 0) / kLoopStep;
+  m(4, 1) = -k * integral(4, 1) / kLoopStep;
+  m(4, 2) = -k * integral(4, 3) / kLoopStep;
+  m(4, 3) = -k * integral(4, 2) / kLoopStep;
   return m.partialPivLu().solve(right)(4);
 }
 
@@ -174,17 +174,17 @@ Complex simulated_response(const TorqueLoopGains& gains, int delay, double inert
   DriveSettings settings = one_joint(gains);
   settings.command_delay = delay;
   SeriesElasticDrive drive(settings);
-  const int period = static_cast<int>(std::lround(1.0 / (hertz * kStep)));
+  const int period = static_cast<int>(std::lround(1.0 / (hertz * kLoopStep)));
   const double w = 2.0 * std::numbers::pi / period;
   std::array<double, 1> rate{0.0}, torque{}, reference{};
   drive.start(rate);
   Complex sum;
-  const int settle = static_cast<int>(3.0 / kStep) / period;
+  const int settle = static_cast<int>(3.0 / kLoopStep) / period;
   for (int k = 0; k < (settle + 1) * period; ++k) {
     reference[0] = std::cos(w * k);
     drive.command(reference);
     drive.advance(rate, torque);
-    if (inertia > 0.0) rate[0] += torque[0] * kStep / inertia;
+    if (inertia > 0.0) rate[0] += torque[0] * kLoopStep / inertia;
     if (k >= settle * period) sum += torque[0] * std::exp(Complex(0.0, -w * k)) * (2.0 / period);
   }
   return sum;
@@ -192,11 +192,11 @@ Complex simulated_response(const TorqueLoopGains& gains, int delay, double inert
 
 TEST(Drive, RespondsAsTheSampledTransferFunctionLockedAndFree) {
   double worst_gain = 0.0, worst_phase = 0.0;
-  for (const TorqueLoopGains& gains : {kCascade, kDirect}) {
+  for (const TorqueLoopGains& gains : {kDriveCascade, kDriveDirect}) {
     for (const double inertia : {0.0, 0.3}) {  // kg m^2; 0: locked
       for (const int delay : {0, kTick}) {
         for (const int period : {12000, 2400, 1200, 600, 300, 200, 120}) {  // 1 to 100 Hz
-          const double hertz = 1.0 / (period * kStep);
+          const double hertz = 1.0 / (period * kLoopStep);
           const Complex ratio = simulated_response(gains, delay, inertia, hertz) /
                                 sampled_response(gains, delay, inertia, hertz);
           worst_gain = std::max(worst_gain, std::abs(std::abs(ratio) - 1.0));
@@ -210,16 +210,16 @@ TEST(Drive, RespondsAsTheSampledTransferFunctionLockedAndFree) {
 }
 
 TEST(Drive, ImpossibleSettingsAreRefused) {
-  DriveSettings settings = one_joint(kDirect);
+  DriveSettings settings = one_joint(kDriveDirect);
   settings.steps = 0;
   EXPECT_THROW(SeriesElasticDrive{settings}, std::invalid_argument);
-  settings = one_joint(kDirect);
+  settings = one_joint(kDriveDirect);
   settings.command_delay = -1;
   EXPECT_THROW(SeriesElasticDrive{settings}, std::invalid_argument);
 }
 
 TEST(Drive, AnAdvanceAllocatesNothing) {
-  DriveSettings settings = one_joint(kCascade);
+  DriveSettings settings = one_joint(kDriveCascade);
   settings.steps = kTick;
   settings.command_delay = settings.measurement_delay = kTick;
   SeriesElasticDrive drive(settings);
@@ -229,7 +229,7 @@ TEST(Drive, AnAdvanceAllocatesNothing) {
   const AllocationGuard guard;
   drive.command(torque);
   drive.advance(rate, out);
-  drive.change_gains(0, kDirect);
+  drive.change_gains(0, kDriveDirect);
   drive.advance(rate, out);
   EXPECT_EQ(guard.allocations(), 0);
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/unit/hal/actuator_test_support.h"
+
 namespace footfall::tests {
 namespace {
 
@@ -69,26 +71,20 @@ TEST(Passivity, ProportionalLoopsArePassiveWithoutDelayAndNotWithIt) {
   EXPECT_LT(hal::least_admittance(p, knee, 0.667e-3, 0.01, 1e4, 1000), 0.0);
 }
 
-double one_step(hal::TorqueLoop& loop, const hal::TorqueLoopInput& input) {
-  const double asked = loop.ask(input);
-  loop.settle(input, asked, asked);
-  return asked;
-}
-
 // The output is moved as a sine, from rest: the most energy that came out of the port until any
 // moment, ∫τ_s q' dt, relative to what went to and fro. A passive port has none to give. The loop
 // runs at 120 kHz, whose delay of half a step turns 8 Hz by 0.012 deg.
 double most_energy_given(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator) {
-  constexpr double kHertz = 8.0, kStep = 1.0 / 120000.0;
-  hal::SeriesElasticActuator motor(actuator, kStep);
-  hal::TorqueLoop loop(gains, kStep);
+  constexpr double kHertz = 8.0, kFine = 1.0 / 120000.0;
+  hal::SeriesElasticActuator motor(actuator, kFine);
+  hal::TorqueLoop loop(gains, kFine);
   double energy = 0.0, most = 0.0, turned_over = 0.0;
-  for (int k = 0; k < 20.0 / kStep && turned_over < 1e12; ++k) {
-    const double rate = std::cos(2.0 * M_PI * kHertz * (k + 0.5) * kStep);
+  for (int k = 0; k < 20.0 / kFine && turned_over < 1e12; ++k) {
+    const double rate = std::cos(2.0 * M_PI * kHertz * (k + 0.5) * kFine);
     const auto done =
         motor.advance(one_step(loop, {0.0, motor.spring_torque(), motor.state().rate, rate}), rate);
-    energy += done.spring_torque * rate * kStep;
-    turned_over += std::abs(done.spring_torque * rate * kStep);
+    energy += done.spring_torque * rate * kFine;
+    turned_over += std::abs(done.spring_torque * rate * kFine);
     most = std::max(most, energy);
   }
   return most / turned_over;

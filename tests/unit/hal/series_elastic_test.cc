@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "tests/support/allocation_guard.h"
+#include "tests/unit/hal/actuator_test_support.h"
 
 namespace footfall::tests {
 namespace {
@@ -19,9 +20,6 @@ using hal::SeriesElasticActuator;
 using hal::SeriesElasticParameters;
 using hal::SeriesElasticState;
 using hal::SeriesElasticStep;
-
-constexpr double kStep = 1.0 / 12000.0;  // s
-const SeriesElasticParameters kKnee{.spring = 415.0, .rotor = 0.0872756, .viscous = 0.5};
 
 SeriesElasticParameters random_parameters(std::mt19937_64& random, bool coulomb) {
   std::uniform_real_distribution<double> part(0.0, 1.0);
@@ -57,10 +55,10 @@ TEST(SeriesElastic, AStepIsThatOfAFineIntegration) {
   std::normal_distribution<double> normal;
   for (int trial = 0; trial < 200; ++trial) {
     const SeriesElasticParameters p = random_parameters(random, false);
-    SeriesElasticActuator actuator(p, kStep);
+    SeriesElasticActuator actuator(p, kLoopStep);
     actuator.set_state({0.1 * normal(random), 5.0 * normal(random)});
     const double u = 20.0 * normal(random), v = 3.0 * normal(random);
-    const auto expected = runge_kutta(p, actuator.state(), u, v, kStep, 50);
+    const auto expected = runge_kutta(p, actuator.state(), u, v, kLoopStep, 50);
     actuator.advance(u, v);
     EXPECT_NEAR(actuator.state().deflection, expected.deflection, 1e-13);
     EXPECT_NEAR(actuator.state().rate, expected.rate, 1e-11);
@@ -72,8 +70,8 @@ TEST(SeriesElastic, AStepIsThatOfAFineIntegration) {
 // less than 1e-7 of it.
 double balance(const SeriesElasticParameters& p, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  SeriesElasticActuator actuator(p, kStep);
-  SeriesElasticActuator half(p, kStep / 2);
+  SeriesElasticActuator actuator(p, kLoopStep);
+  SeriesElasticActuator half(p, kLoopStep / 2);
   actuator.set_state({0.05 * normal(random), 3.0 * normal(random)});
   const double begin = actuator.energy();
   double in = 0.0, out = 0.0, lost = 0.0, turned_over = std::abs(begin);
@@ -85,15 +83,15 @@ double balance(const SeriesElasticParameters& p, std::mt19937_64& random) {
     const SeriesElasticStep done = actuator.advance(u, v);
     SeriesElasticParameters frictionless = p;
     frictionless.coulomb = 0.0;
-    SeriesElasticActuator middle(frictionless, kStep / 2);
+    SeriesElasticActuator middle(frictionless, kLoopStep / 2);
     middle.set_state(half.state());
     middle.advance(done.motor_torque - done.friction_torque, v);
     const double mid = middle.state().rate, last = actuator.state().rate;
     in += (done.motor_torque - done.friction_torque) * done.motor_angle;
-    out += done.spring_torque * v * kStep;
-    lost += p.viscous * kStep / 6.0 * (first * first + 4.0 * mid * mid + last * last);
-    turned_over +=
-        std::abs(done.motor_torque * done.motor_angle) + std::abs(done.spring_torque * v * kStep);
+    out += done.spring_torque * v * kLoopStep;
+    lost += p.viscous * kLoopStep / 6.0 * (first * first + 4.0 * mid * mid + last * last);
+    turned_over += std::abs(done.motor_torque * done.motor_angle) +
+                   std::abs(done.spring_torque * v * kLoopStep);
   }
   return std::abs(actuator.energy() - begin - in + out + lost) / turned_over;
 }
@@ -123,7 +121,7 @@ TEST(SeriesElastic, TheMeanSpringTorqueIsTheImpulseOnTheJoint) {
 TEST(SeriesElastic, CoulombFrictionHoldsTheRotorUpToItsLimit) {
   SeriesElasticParameters p = kKnee;
   p.coulomb = 1.0;
-  SeriesElasticActuator actuator(p, kStep);
+  SeriesElasticActuator actuator(p, kLoopStep);
   for (int k = 0; k < 1000; ++k) actuator.advance(0.9, 0.0);
   EXPECT_NEAR(actuator.state().deflection, 0.0, 1e-15);
   for (int k = 0; k < 200000; ++k) actuator.advance(5.0, 0.0);
@@ -138,7 +136,7 @@ TEST(SeriesElastic, CoulombFrictionTakesEnergyInEveryStep) {
   for (int trial = 0; trial < 1000; ++trial) {
     SeriesElasticParameters p = random_parameters(random, true);
     p.viscous = 0.0;
-    SeriesElasticActuator actuator(p, kStep);
+    SeriesElasticActuator actuator(p, kLoopStep);
     actuator.set_state({0.02 * normal(random), 2.0 * normal(random)});
     for (int k = 0; k < 50; ++k) {
       const double before = actuator.energy();
@@ -153,7 +151,7 @@ TEST(SeriesElastic, NoSpringIsTooStiffAndNoRotorTooLight) {
   for (const auto& p : {SeriesElasticParameters{.spring = 4e8, .rotor = 0.1, .viscous = 0.5},
                         SeriesElasticParameters{.spring = 400.0, .rotor = 1e-7, .viscous = 0.5},
                         SeriesElasticParameters{.spring = 4e8, .rotor = 1e-7, .viscous = 1e3}}) {
-    SeriesElasticActuator actuator(p, kStep);
+    SeriesElasticActuator actuator(p, kLoopStep);
     actuator.set_state({1e-3, 1.0});
     double most = actuator.energy();
     for (int k = 0; k < 12000; ++k) {
@@ -168,7 +166,7 @@ TEST(SeriesElastic, TheMotorIsLimitedInTorqueAndSpeed) {
   SeriesElasticParameters p = kKnee;
   p.torque = 100.0;
   p.speed = 10.0;
-  SeriesElasticActuator actuator(p, kStep);
+  SeriesElasticActuator actuator(p, kLoopStep);
   EXPECT_EQ(actuator.advance(300.0, 0.0).motor_torque, 100.0);
   EXPECT_EQ(actuator.advance(-300.0, 0.0).motor_torque, -100.0);
   actuator.set_state({0.0, 9.0});
@@ -184,20 +182,20 @@ TEST(SeriesElastic, ALockedOutputRespondsAsItsTransferFunction) {
   const std::complex<double> i(0.0, 1.0);
   for (const double hertz : {1.0, 5.0, 11.0, 20.0, 50.0}) {
     const double w = 2.0 * std::numbers::pi * hertz;
-    SeriesElasticActuator actuator(kKnee, kStep);
-    const int period = static_cast<int>(std::lround(1.0 / (hertz * kStep)));
-    const double w_exact = 2.0 * std::numbers::pi / (period * kStep);
+    SeriesElasticActuator actuator(kKnee, kLoopStep);
+    const int period = static_cast<int>(std::lround(1.0 / (hertz * kLoopStep)));
+    const double w_exact = 2.0 * std::numbers::pi / (period * kLoopStep);
     std::complex<double> sum;
-    const int settle = static_cast<int>(4.0 / kStep) / period;  // decay b/2J: 2.9 1/s
+    const int settle = static_cast<int>(4.0 / kLoopStep) / period;  // decay b/2J: 2.9 1/s
     for (int k = 0; k < (settle + 1) * period; ++k) {
-      const double t = k * kStep;
+      const double t = k * kLoopStep;
       if (k >= settle * period) {
         sum += actuator.spring_torque() * std::exp(-i * w_exact * t) * (2.0 / period);
       }
       actuator.advance(std::cos(w_exact * t), 0.0);
     }
     const std::complex<double> s = i * w_exact;
-    const std::complex<double> held = (1.0 - std::exp(-s * kStep)) / (s * kStep);
+    const std::complex<double> held = (1.0 - std::exp(-s * kLoopStep)) / (s * kLoopStep);
     const std::complex<double> expected =
         held * kKnee.spring / (kKnee.rotor * s * s + kKnee.viscous * s + kKnee.spring);
     EXPECT_NEAR(std::abs(sum / expected), 1.0, 0.02) << w / (2.0 * std::numbers::pi) << " Hz";
@@ -206,7 +204,7 @@ TEST(SeriesElastic, ALockedOutputRespondsAsItsTransferFunction) {
 }
 
 TEST(SeriesElastic, ImpossibleParametersAreRefused) {
-  const auto refused = [](SeriesElasticParameters p, double step = kStep) {
+  const auto refused = [](SeriesElasticParameters p, double step = kLoopStep) {
     EXPECT_THROW(SeriesElasticActuator(p, step), std::invalid_argument);
   };
   refused({.spring = 0.0, .rotor = 0.1});
@@ -218,7 +216,7 @@ TEST(SeriesElastic, ImpossibleParametersAreRefused) {
 }
 
 TEST(SeriesElastic, AStepAllocatesNothing) {
-  SeriesElasticActuator actuator(kKnee, kStep);
+  SeriesElasticActuator actuator(kKnee, kLoopStep);
   const AllocationGuard guard;
   for (int k = 0; k < 100; ++k) actuator.advance(1.0, 0.1);
   EXPECT_EQ(guard.allocations(), 0);

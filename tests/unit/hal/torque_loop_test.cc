@@ -8,6 +8,7 @@
 
 #include "hal/actuators/series_elastic.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/unit/hal/actuator_test_support.h"
 
 namespace footfall::tests {
 namespace {
@@ -16,7 +17,6 @@ using hal::TorqueLoop;
 using hal::TorqueLoopGains;
 using hal::TorqueLoopInput;
 
-constexpr double kStep = 1.0 / 12000.0;  // s
 const TorqueLoopGains kCascade{.type = TorqueLoopGains::Type::cascade,
                                .p = 0.4,
                                .i = 4.0,
@@ -25,37 +25,31 @@ const TorqueLoopGains kCascade{.type = TorqueLoopGains::Type::cascade,
 const TorqueLoopGains kDirect{
     .type = TorqueLoopGains::Type::direct, .p = 20.0, .i = 10.0, .forward = 1.0, .damping = 10.0};
 
-double one_step(TorqueLoop& loop, const TorqueLoopInput& input) {
-  const double asked = loop.ask(input);
-  loop.settle(input, asked, asked);
-  return asked;
-}
-
 TEST(TorqueLoop, TheFirstOutputIsTheProportionalPart) {
   const TorqueLoopInput input{
       .reference = 10.0, .torque = 4.0, .motor_rate = 0.5, .joint_rate = 0.2};
-  EXPECT_DOUBLE_EQ(TorqueLoop(kCascade, kStep).ask(input), 15.0 * (0.4 * 6.0 - 0.5));
-  EXPECT_DOUBLE_EQ(TorqueLoop(kDirect, kStep).ask(input), 10.0 + 20.0 * 6.0 - 10.0 * 0.5);
+  EXPECT_DOUBLE_EQ(TorqueLoop(kCascade, kLoopStep).ask(input), 15.0 * (0.4 * 6.0 - 0.5));
+  EXPECT_DOUBLE_EQ(TorqueLoop(kDirect, kLoopStep).ask(input), 10.0 + 20.0 * 6.0 - 10.0 * 0.5);
   TorqueLoopGains spring = kDirect;
   spring.damps = TorqueLoopGains::Damping::spring;
-  EXPECT_NEAR(TorqueLoop(spring, kStep).ask(input), 10.0 + 20.0 * 6.0 - 10.0 * 0.3, 1e-12);
+  EXPECT_NEAR(TorqueLoop(spring, kLoopStep).ask(input), 10.0 + 20.0 * 6.0 - 10.0 * 0.3, 1e-12);
 }
 
 TEST(TorqueLoop, IntegralsAreOfTheErrorsTimesTheirGains) {
   const TorqueLoopInput input{.reference = 1.0};
-  TorqueLoop direct(kDirect, kStep);
+  TorqueLoop direct(kDirect, kLoopStep);
   const double first = one_step(direct, input);
   for (int k = 1; k < 1200; ++k) one_step(direct, input);
-  EXPECT_NEAR(one_step(direct, input) - first, 10.0 * 1.0 * 1200 * kStep, 1e-9);
-  TorqueLoop cascade(kCascade, kStep);
+  EXPECT_NEAR(one_step(direct, input) - first, 10.0 * 1.0 * 1200 * kLoopStep, 1e-9);
+  TorqueLoop cascade(kCascade, kLoopStep);
   // With constant errors the outer integral is linear and the inner one quadratic in time.
   double outer = 0.0, inner = 0.0, expected = 0.0;
   for (int k = 0; k < 1200; ++k) {
     const double slip = 0.4 + outer;
     expected = 15.0 * slip + inner;
     EXPECT_NEAR(one_step(cascade, input), expected, 1e-9);
-    inner += 30.0 * slip * kStep;
-    outer += 4.0 * kStep;
+    inner += 30.0 * slip * kLoopStep;
+    outer += 4.0 * kLoopStep;
   }
 }
 
@@ -63,7 +57,7 @@ TEST(TorqueLoop, IntegralsAreOfTheErrorsTimesTheirGains) {
 double after(TorqueLoop& loop, hal::SeriesElasticActuator& actuator, double reference,
              double time) {
   double largest = 0.0;
-  for (int k = 0; k < time / kStep; ++k) {
+  for (int k = 0; k < time / kLoopStep; ++k) {
     const double torque = actuator.spring_torque();
     largest = std::max(largest, torque);
     const TorqueLoopInput input{reference, torque, actuator.state().rate, 0.0};
@@ -76,8 +70,8 @@ double after(TorqueLoop& loop, hal::SeriesElasticActuator& actuator, double refe
 TEST(TorqueLoop, BothReachTheirReferenceOnALockedOutput) {
   for (const TorqueLoopGains& gains : {kCascade, kDirect}) {
     hal::SeriesElasticActuator actuator(
-        {.spring = 415.0, .rotor = 0.0872756, .viscous = 0.5, .coulomb = 1.0}, kStep);
-    TorqueLoop loop(gains, kStep);
+        {.spring = 415.0, .rotor = 0.0872756, .viscous = 0.5, .coulomb = 1.0}, kLoopStep);
+    TorqueLoop loop(gains, kLoopStep);
     after(loop, actuator, 30.0, 3.0);
     EXPECT_NEAR(actuator.spring_torque(), 30.0, 0.15);
   }
@@ -90,8 +84,8 @@ TEST(TorqueLoop, IntegralsDoNotWindUpAtTheLimit) {
     double overshoot[2];
     for (const int k : {0, 1}) {
       hal::SeriesElasticActuator actuator(
-          {.spring = 415.0, .rotor = 0.0872756, .viscous = 0.5, .torque = 20.0}, kStep);
-      TorqueLoop loop(gains, kStep);
+          {.spring = 415.0, .rotor = 0.0872756, .viscous = 0.5, .torque = 20.0}, kLoopStep);
+      TorqueLoop loop(gains, kLoopStep);
       after(loop, actuator, 60.0, k == 0 ? 3.0 : 10.0);  // more than the motor can
       after(loop, actuator, 10.0, 0.05);
       overshoot[k] = after(loop, actuator, 10.0, 2.0);
@@ -119,7 +113,7 @@ TEST(TorqueLoop, AChangeOfGainsLeavesTheCommandContinuous) {
             .damping = 20.0 * part(random)};
   };
   for (int trial = 0; trial < 1000; ++trial) {
-    TorqueLoop loop(any(), kStep), kept = loop;
+    TorqueLoop loop(any(), kLoopStep), kept = loop;
     TorqueLoopInput input{10.0 * normal(random), 10.0 * normal(random), normal(random),
                           normal(random)};
     for (int k = 0; k < 100; ++k) one_step(loop, input);
@@ -130,12 +124,12 @@ TEST(TorqueLoop, AChangeOfGainsLeavesTheCommandContinuous) {
     // What was added is gone after some time constants: the law of the new gains alone is left.
     if (other.i != 0.0 || other.velocity_i != 0.0) continue;
     for (int k = 0; k < 12000; ++k) one_step(loop, input);  // 50 time constants
-    EXPECT_NEAR(one_step(loop, input), TorqueLoop(other, kStep).ask(input), 1e-9);
+    EXPECT_NEAR(one_step(loop, input), TorqueLoop(other, kLoopStep).ask(input), 1e-9);
   }
 }
 
 TEST(TorqueLoop, AStepAllocatesNothing) {
-  TorqueLoop loop(kCascade, kStep);
+  TorqueLoop loop(kCascade, kLoopStep);
   const AllocationGuard guard;
   for (int k = 0; k < 100; ++k) one_step(loop, {1.0, 0.5, 0.1, 0.1});
   loop.change(kDirect, {1.0, 0.5, 0.1, 0.1});
