@@ -24,13 +24,6 @@ using hal::TorqueLoopGains;
 using Complex = std::complex<double>;
 
 constexpr int kTick = 8;  // steps of a control period
-const TorqueLoopGains kDriveCascade{.type = TorqueLoopGains::Type::cascade,
-                                    .p = 0.8,
-                                    .i = 2.0,
-                                    .velocity_p = 25.0,
-                                    .velocity_i = 50.0};
-const TorqueLoopGains kDriveDirect{
-    .type = TorqueLoopGains::Type::direct, .p = 20.0, .i = 10.0, .forward = 1.0, .damping = 25.0};
 
 DriveSettings one_joint(const TorqueLoopGains& gains) {
   DriveSettings settings;
@@ -40,7 +33,7 @@ DriveSettings one_joint(const TorqueLoopGains& gains) {
 }
 
 TEST(Drive, StartsWithSpringsThatCarryTheTorquesGiven) {
-  SeriesElasticDrive drive(one_joint(kDriveDirect));
+  SeriesElasticDrive drive(one_joint(kDirect));
   const std::array<double, 1> torque{12.0};
   drive.start(torque);
   EXPECT_DOUBLE_EQ(drive.measured(0).torque, 12.0);
@@ -49,7 +42,7 @@ TEST(Drive, StartsWithSpringsThatCarryTheTorquesGiven) {
 
 TEST(Drive, ACommandArrivesAfterItsDelay) {
   for (const int delay : {0, 1, 8, 13}) {
-    DriveSettings settings = one_joint(kDriveDirect);
+    DriveSettings settings = one_joint(kDirect);
     settings.command_delay = delay;
     SeriesElasticDrive drive(settings);
     const std::array<double, 1> zero{0.0}, torque{10.0};
@@ -67,9 +60,9 @@ TEST(Drive, ACommandArrivesAfterItsDelay) {
 }
 
 TEST(Drive, AMeasurementArrivesAfterItsDelay) {
-  DriveSettings settings = one_joint(kDriveDirect);
+  DriveSettings settings = one_joint(kDirect);
   settings.measurement_delay = 5;
-  SeriesElasticDrive late(settings), prompt(one_joint(kDriveDirect));
+  SeriesElasticDrive late(settings), prompt(one_joint(kDirect));
   const std::array<double, 1> zero{0.0}, torque{10.0};
   std::array<double, 1> out{};
   std::vector<double> measured;
@@ -84,7 +77,7 @@ TEST(Drive, AMeasurementArrivesAfterItsDelay) {
 }
 
 TEST(Drive, EncodersCountInTheirResolution) {
-  DriveSettings settings = one_joint(kDriveDirect);
+  DriveSettings settings = one_joint(kDirect);
   settings.deflection_resolution = 0.7 / (1 << 14);  // 14 bit over +-0.35 rad
   SeriesElasticDrive drive(settings);
   const std::array<double, 1> zero{0.0}, torque{10.0};
@@ -103,7 +96,7 @@ TEST(Drive, EncodersCountInTheirResolution) {
 
 // The measured torque is the nominal spring's: with another true one it is wrong by their ratio.
 TEST(Drive, AWrongSpringMakesTheMeasuredTorqueWrong) {
-  DriveSettings settings = one_joint(kDriveDirect);
+  DriveSettings settings = one_joint(kDirect);
   settings.joints[0].nominal_spring = 1.03 * kKnee.spring;
   SeriesElasticDrive drive(settings);
   const std::array<double, 1> zero{0.0}, torque{10.0};
@@ -192,7 +185,7 @@ Complex simulated_response(const TorqueLoopGains& gains, int delay, double inert
 
 TEST(Drive, RespondsAsTheSampledTransferFunctionLockedAndFree) {
   double worst_gain = 0.0, worst_phase = 0.0;
-  for (const TorqueLoopGains& gains : {kDriveCascade, kDriveDirect}) {
+  for (const TorqueLoopGains& gains : {kCascade, kDirect}) {
     for (const double inertia : {0.0, 0.3}) {  // kg m^2; 0: locked
       for (const int delay : {0, kTick}) {
         for (const int period : {12000, 2400, 1200, 600, 300, 200, 120}) {  // 1 to 100 Hz
@@ -210,16 +203,16 @@ TEST(Drive, RespondsAsTheSampledTransferFunctionLockedAndFree) {
 }
 
 TEST(Drive, ImpossibleSettingsAreRefused) {
-  DriveSettings settings = one_joint(kDriveDirect);
+  DriveSettings settings = one_joint(kDirect);
   settings.steps = 0;
   EXPECT_THROW(SeriesElasticDrive{settings}, std::invalid_argument);
-  settings = one_joint(kDriveDirect);
+  settings = one_joint(kDirect);
   settings.command_delay = -1;
   EXPECT_THROW(SeriesElasticDrive{settings}, std::invalid_argument);
 }
 
 TEST(Drive, AnAdvanceAllocatesNothing) {
-  DriveSettings settings = one_joint(kDriveCascade);
+  DriveSettings settings = one_joint(kCascade);
   settings.steps = kTick;
   settings.command_delay = settings.measurement_delay = kTick;
   SeriesElasticDrive drive(settings);
@@ -229,7 +222,7 @@ TEST(Drive, AnAdvanceAllocatesNothing) {
   const AllocationGuard guard;
   drive.command(torque);
   drive.advance(rate, out);
-  drive.change_gains(0, kDriveDirect);
+  drive.change_gains(0, kDirect);
   drive.advance(rate, out);
   EXPECT_EQ(guard.allocations(), 0);
 }

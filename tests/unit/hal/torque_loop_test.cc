@@ -17,22 +17,14 @@ using hal::TorqueLoop;
 using hal::TorqueLoopGains;
 using hal::TorqueLoopInput;
 
-const TorqueLoopGains kCascade{.type = TorqueLoopGains::Type::cascade,
-                               .p = 0.4,
-                               .i = 4.0,
-                               .velocity_p = 15.0,
-                               .velocity_i = 30.0};
-const TorqueLoopGains kDirect{
-    .type = TorqueLoopGains::Type::direct, .p = 20.0, .i = 10.0, .forward = 1.0, .damping = 10.0};
-
 TEST(TorqueLoop, TheFirstOutputIsTheProportionalPart) {
   const TorqueLoopInput input{
       .reference = 10.0, .torque = 4.0, .motor_rate = 0.5, .joint_rate = 0.2};
-  EXPECT_DOUBLE_EQ(TorqueLoop(kCascade, kLoopStep).ask(input), 15.0 * (0.4 * 6.0 - 0.5));
-  EXPECT_DOUBLE_EQ(TorqueLoop(kDirect, kLoopStep).ask(input), 10.0 + 20.0 * 6.0 - 10.0 * 0.5);
+  EXPECT_DOUBLE_EQ(TorqueLoop(kCascade, kLoopStep).ask(input), 25.0 * (0.8 * 6.0 - 0.5));
+  EXPECT_DOUBLE_EQ(TorqueLoop(kDirect, kLoopStep).ask(input), 10.0 + 20.0 * 6.0 - 25.0 * 0.5);
   TorqueLoopGains spring = kDirect;
   spring.damps = TorqueLoopGains::Damping::spring;
-  EXPECT_NEAR(TorqueLoop(spring, kLoopStep).ask(input), 10.0 + 20.0 * 6.0 - 10.0 * 0.3, 1e-12);
+  EXPECT_NEAR(TorqueLoop(spring, kLoopStep).ask(input), 10.0 + 20.0 * 6.0 - 25.0 * 0.3, 1e-12);
 }
 
 TEST(TorqueLoop, IntegralsAreOfTheErrorsTimesTheirGains) {
@@ -45,11 +37,11 @@ TEST(TorqueLoop, IntegralsAreOfTheErrorsTimesTheirGains) {
   // With constant errors the outer integral is linear and the inner one quadratic in time.
   double outer = 0.0, inner = 0.0, expected = 0.0;
   for (int k = 0; k < 1200; ++k) {
-    const double slip = 0.4 + outer;
-    expected = 15.0 * slip + inner;
+    const double slip = 0.8 + outer;
+    expected = 25.0 * slip + inner;
     EXPECT_NEAR(one_step(cascade, input), expected, 1e-9);
-    inner += 30.0 * slip * kLoopStep;
-    outer += 4.0 * kLoopStep;
+    inner += 50.0 * slip * kLoopStep;
+    outer += 2.0 * kLoopStep;
   }
 }
 
