@@ -44,14 +44,6 @@ core::Diagnostic at_override(const core::Diagnostic& problem, const core::Diagno
   return moved;
 }
 
-void add(core::Diagnostics& to, const core::Diagnostic& item) {
-  if (item.severity == core::Severity::error) {
-    to.error(item.mark, item.id, item.text);
-  } else {
-    to.warning(item.mark, item.id, item.text);
-  }
-}
-
 // Moves findings to the override that alone brings them.
 core::Diagnostics blame_set(const core::YamlNode& root, const LoadOptions& options,
                             const core::Diagnostics& before, const core::Diagnostics& found,
@@ -77,7 +69,7 @@ core::Diagnostics blame_set(const core::YamlNode& root, const LoadOptions& optio
     std::size_t by = 0;
     while (by < alone.size() && !alone[by].contains(key)) ++by;
     const bool blamed = !own.contains(key) && by < alone.size();
-    add(out, blamed ? at_override(item, found, options.set[by].first, "found at", out) : item);
+    out.add(blamed ? at_override(item, found, options.set[by].first, "found at", out) : item);
   }
   return out;
 }
@@ -99,7 +91,7 @@ bool blame_overrides(const core::YamlNode& root, const LoadOptions& options,
     const core::Diagnostic* problem = first_error(alone, before);
     if (problem == nullptr) continue;
     found = true;
-    add(diagnostics, at_override(*problem, alone, edit.first, "needed at", diagnostics));
+    diagnostics.add(at_override(*problem, alone, edit.first, "needed at", diagnostics));
   }
   return found;
 }

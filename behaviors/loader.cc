@@ -107,7 +107,7 @@ core::Diagnostics check_loaded(const Behavior& behavior, const core::YamlNode& r
     if (trial != nullptr) options.check(*trial, problems);
     for (std::size_t k = before.all().size(); trial == nullptr && k < own.all().size(); ++k) {
       const core::Diagnostic& item = own.all()[k];
-      if (item.severity == core::Severity::error) problems.error(item.mark, item.id, item.text);
+      if (item.severity == core::Severity::error) problems.add(item);
     }
     return trial != nullptr;
   };
@@ -117,12 +117,7 @@ core::Diagnostics check_loaded(const Behavior& behavior, const core::YamlNode& r
 void append(core::Diagnostics& to, const core::Diagnostics& from, std::size_t first) {
   for (int k = 0; k < from.file_count(); ++k) to.add_file(from.file(k));
   for (std::size_t k = first; k < from.all().size(); ++k) {
-    const core::Diagnostic& item = from.all()[k];
-    if (item.severity == core::Severity::error) {
-      to.error(item.mark, item.id, item.text);
-    } else {
-      to.warning(item.mark, item.id, item.text);
-    }
+    to.add(from.all()[k]);
   }
 }
 

@@ -110,9 +110,7 @@ void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
   behaviors::physics_check(world)(*scenario.behavior, found);
   for (core::Diagnostic item : found.sorted()) {
     if (item.mark.file >= 0) item.mark.file = diagnostics.add_file(found.file(item.mark.file));
-    const bool error = item.severity == core::Severity::error;
-    if (error) diagnostics.error(item.mark, item.id, item.text);
-    if (!error) diagnostics.warning(item.mark, item.id, item.text);
+    diagnostics.add(item);
   }
   if (!diagnostics.has_errors()) lab::check_edits(scenario, world, diagnostics);
 }

@@ -66,6 +66,14 @@ void Diagnostics::warning(Mark mark, std::string_view id, std::string text) {
   items_.push_back({Severity::warning, mark, std::string(id), std::move(text)});
 }
 
+void Diagnostics::add(const Diagnostic& item) {
+  if (item.severity == Severity::error) {
+    error(item.mark, item.id, item.text);
+  } else {
+    warning(item.mark, item.id, item.text);
+  }
+}
+
 std::vector<Diagnostic> Diagnostics::sorted() const {
   const auto key = [](const Diagnostic& item) {
     return std::tie(item.mark.file, item.mark.line, item.mark.column);

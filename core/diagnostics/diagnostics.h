@@ -51,6 +51,8 @@ class Diagnostics {
   // there, once for each cause.
   void error(Mark mark, std::string_view id, std::string text);
   void warning(Mark mark, std::string_view id, std::string text);
+  // Adds a problem as it is, of whichever severity.
+  void add(const Diagnostic& item);
   // Suppresses further diagnostics at this position: they would only follow from an earlier one.
   void silence(Mark mark) { silent_.insert({mark.file, mark.line, mark.column}); }
   bool has_errors() const { return error_count_ > 0; }

@@ -167,22 +167,15 @@ class Blame {
     for (int k = 0; k < found_.file_count(); ++k) out.add_file(found_.file(k));
     for (const auto& [index, gone] : blamed_) {
       const Diagnostic& first = first_of(edits_[index], gone);
-      add(out, first, edits_[index].mark, text_of(edits_[index], first, gone.size()));
+      out.add({first.severity, edits_[index].mark, first.id,
+               text_of(edits_[index], first, gone.size())});
     }
     for (std::size_t k = before_.all().size(); k < found_.all().size(); ++k) {
       const Diagnostic& item = found_.all()[k];
       if (is_meant(item) && explained_.contains(key_of(item))) continue;
-      add(out, item, item.mark, item.text);
+      out.add(item);
     }
     return out;
-  }
-
-  static void add(Diagnostics& out, const Diagnostic& like, Mark mark, const std::string& text) {
-    if (like.severity == Severity::error) {
-      out.error(mark, like.id, text);
-    } else {
-      out.warning(mark, like.id, text);
-    }
   }
 
   const YamlLayers& layers_;
