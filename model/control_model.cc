@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/index.h"
 #include "model/mjcf.h"
 
 namespace footfall::model {
@@ -142,6 +143,7 @@ ControlModel::ControlModel(const RobotDescription& robot, const ModelDeviation& 
   angular_.jacobian.assign(cells, 0.0);
   mass_matrix_.assign(static_cast<std::size_t>(nv_ * nv_), 0.0);
   com_.jacobian.assign(cells, 0.0);
+  for (int k = 0; k < 3; ++k) com_.jacobian[at(k * nv_ + k)] = 1.0;
   base_.jacobian.assign(cells, 0.0);
   bias_.assign(static_cast<std::size_t>(nv_), 0.0);
   // Shapes and sites have no part in dynamics, but MuJoCo's kinematics would place each of them
@@ -293,19 +295,28 @@ void ControlModel::fill_angular_momentum() const noexcept {
   fresh_angular_ = true;
 }
 
+// The first three rows of A are the linear momentum in world axes, m J_com (its first three columns
+// are the unit matrix, set by the constructor); those of b + g, the
+// force that q̈ = 0 takes, are m (J̇_com q̇ - gravity).
+void ControlModel::com_from_base_rows() noexcept {
+  const mjModel* m = mj_->model.get();
+  const mjData* d = mj_->data.get();
+  // qM has of DoF i the diagonal, then the columns of its ancestors up to the base's z, y, x.
+  for (int i = 3; i < nv_; ++i) {
+    const int end = i + 1 < nv_ ? m->dof_Madr[i + 1] : m->nM;
+    for (int k = 0; k < 3; ++k) com_.jacobian[at(k * nv_ + i)] = d->qM[end - 1 - k] / mass_;
+  }
+  for (std::size_t k = 0; k < 3; ++k) com_.bias[k] = bias_[k] / mass_ + m->opt.gravity[k];
+}
+
 void ControlModel::update_com_and_base() noexcept {
   const mjModel* m = mj_->model.get();
   mjData* d = mj_->data.get();
   std::copy_n(d->subtree_com + 3 * base_body_, 3, com_.position.data());
-  mj_jacSubtreeCom(m, d, com_.jacobian.data(), base_body_);
-  com_.bias = {0.0, 0.0, 0.0};
+  com_from_base_rows();
   momentum_ = {};
   for (int b = base_body_; b < m->nbody; ++b) {
     if (m->body_rootid[b] != base_body_) continue;
-    Vector3 a{};
-    point_motion(b, d->xipos + 3 * b, nullptr, a);
-    const double share = m->body_mass[b] / mass_;
-    for (std::size_t k = 0; k < 3; ++k) com_.bias[k] += share * a[k];
     add_momentum(d->cinert + 10 * b, d->cvel + 6 * b, momentum_);
   }
   mj_jacBody(m, d, nullptr, base_.jacobian.data(), base_body_);

@@ -111,6 +111,7 @@ class ControlModel {
   void fill_frame(int index) const noexcept;
   void fill_angular_momentum() const noexcept;
   void place_points(const RobotDescription& robot);
+  void com_from_base_rows() noexcept;
   void update_com_and_base() noexcept;
   void point_motion(int body, const double* p, std::array<double, 3>* velocity,
                     std::array<double, 3>& bias) const noexcept;

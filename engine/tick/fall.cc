@@ -18,10 +18,9 @@ FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors
   fall.height_limit = robot.height_limit * robot.standing_height;
   fall.low =
       model.contact_count() > 0 && robot.standing_height > 0.0 && fall.height < fall.height_limit;
-  const double upright = model.R_WB()[8];  // cos of the tilt
-  fall.tilt = std::acos(std::clamp(upright, -1.0, 1.0));
+  fall.upright = model.R_WB()[8];
   fall.tilt_limit = robot.tilt_limit;
-  fall.tilted = upright < std::cos(robot.tilt_limit);
+  fall.tilted = fall.upright < std::cos(robot.tilt_limit);
   fall.touching = sensors.body_contact;
   return fall;
 }

@@ -1,6 +1,9 @@
 // Has the robot fallen? Judged from one tick's sensors and state; no memory, no clock.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "model/robot/description.h"
@@ -10,8 +13,9 @@ namespace footfall::engine {
 // The criteria of a fall that a tick can measure. Source: docs/architecture.md, how we count.
 struct FallCriteria {
   double height = 0.0, height_limit = 0.0;  // m, of the base above the lowest contact point
-  double tilt = 0.0, tilt_limit = 0.0;      // rad, from upright
+  double upright = 1.0, tilt_limit = 0.0;   // cosine of the tilt; rad, from upright
   bool low = false, tilted = false, touching = false;  // touching: a body that is no foot
+  double tilt() const noexcept { return std::acos(std::clamp(upright, -1.0, 1.0)); }  // rad
   bool fallen() const noexcept { return low || tilted || touching; }
 };
 FallCriteria judge_fall(const model::RobotDescription& robot, const hal::Sensors& sensors,

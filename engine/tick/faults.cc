@@ -12,10 +12,10 @@ void FaultMonitor::begin_tick() noexcept {
 }
 
 void FaultMonitor::take(const FaultFindings& findings, behaviors::Machine& machine) noexcept {
-  if (!findings.any) return;
+  if (!findings.any()) return;
   for (std::size_t f = 0; f < seen_.size(); ++f) {
-    if (!findings.found[f]) continue;
-    const FaultPlace& place = findings.place[f];
+    if (!findings.has(static_cast<Fault>(f))) continue;
+    const FaultPlace& place = findings.place(static_cast<Fault>(f));
     FaultPlace& worst = worst_place_[f];
     if (place.joint >= 0 && (worst.joint < 0 || place.excess > worst.excess)) worst = place;
     if (!active_[f] && !seen_[f]) {

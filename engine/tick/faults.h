@@ -14,26 +14,34 @@ namespace footfall::engine {
 // the air, s), swing.contact (time under load, s), load.air (time since its
 // release, s); of a task instance: condition (ratio).
 struct FaultPlace {
-  int joint = -1;  // or contact, or task instance; -1: the fault has no place
-  double value = 0.0;
-  double excess = 0.0;  // beyond the limit; the largest is kept
+  int joint;  // or contact, or task instance; -1: the fault has no place
+  double value;
+  double excess;  // beyond the limit; the largest is kept
 };
+inline constexpr FaultPlace kNowhere{-1, 0.0, 0.0};
 
-// What one check found in one tick, as a set of faults.
-struct FaultFindings {
-  std::array<bool, core::kFaultCount> found{};
-  std::array<FaultPlace, core::kFaultCount> place{};
-  bool any = false;
-  void add(core::Fault fault) noexcept {
-    found[static_cast<std::size_t>(fault)] = true;
-    any = true;
+// What one check found in one tick, as a set of faults. Six of them are made in a tick: only places
+// of faults that were found have a value.
+class FaultFindings {
+ public:
+  FaultFindings() noexcept {}  // NOLINT: place_ on purpose without a value
+
+  void add(core::Fault fault, const FaultPlace& where = kNowhere) noexcept {
+    const auto f = static_cast<std::size_t>(fault);
+    if (!found_[f] || where.excess > place_[f].excess) place_[f] = where;
+    found_[f] = any_ = true;
   }
-  void add(core::Fault fault, const FaultPlace& where) noexcept {
-    add(fault);
-    FaultPlace& kept = place[static_cast<std::size_t>(fault)];
-    if (kept.joint < 0 || where.excess > kept.excess) kept = where;
+  bool any() const noexcept { return any_; }
+  bool has(core::Fault fault) const noexcept { return found_[static_cast<std::size_t>(fault)]; }
+  // Only of a fault that it has.
+  const FaultPlace& place(core::Fault fault) const noexcept {
+    return place_[static_cast<std::size_t>(fault)];
   }
-  bool has(core::Fault fault) const noexcept { return found[static_cast<std::size_t>(fault)]; }
+
+ private:
+  std::array<bool, core::kFaultCount> found_{};
+  bool any_ = false;
+  std::array<FaultPlace, core::kFaultCount> place_;
 };
 
 enum class LoopState : std::uint8_t {
@@ -45,7 +53,10 @@ enum class LoopState : std::uint8_t {
 
 class FaultMonitor {
  public:
-  explicit FaultMonitor(const behaviors::Behavior& behavior) : behavior_(behavior) {}
+  explicit FaultMonitor(const behaviors::Behavior& behavior) : behavior_(behavior) {
+    last_place_.fill(kNowhere);
+    worst_place_.fill(kNowhere);
+  }
 
   void begin_tick() noexcept;
   // A fault is counted and raised when it appears; it must go away before it counts again. Several
@@ -90,7 +101,7 @@ class FaultMonitor {
   core::FaultCounters of_machine_;                // known so far
   std::array<bool, core::kFaultCount> active_{};  // faults present in the previous tick
   std::array<bool, core::kFaultCount> seen_{};    // faults present in this one so far
-  std::array<FaultPlace, core::kFaultCount> last_place_{}, worst_place_{};
+  std::array<FaultPlace, core::kFaultCount> last_place_, worst_place_;
   core::Fault ended_by_ = core::Fault::count;
   core::Fault failed_by_ = core::Fault::count;
   LoopState state_ = LoopState::running;

@@ -118,7 +118,10 @@ void SignalWriter::write_control(const behaviors::Machine& machine,
   for (const std::int64_t n : counters.count) faults += static_cast<double>(n);
   signals_[layout.faults] = faults;
   signals_[layout.tick_late] = static_cast<double>(counters.of(core::Fault::tick_overrun));
-  leave_gaps();
+  if (machine.control_spec() != control_) {
+    leave_gaps();
+    control_ = machine.control_spec();
+  }
   write_internals(control.primary, result);
   write_tasks(control.primary, result);
 }
@@ -201,6 +204,7 @@ void SignalWriter::take_over(const SignalWriter& old, const behaviors::TakeOverM
   for (auto* in_force : {&task_in_force_, &internal_in_force_}) {
     std::ranges::fill(*in_force, static_cast<unsigned char>(1));
   }
+  control_ = -1;
 }
 
 }  // namespace footfall::engine

@@ -43,8 +43,9 @@ class SignalWriter {
   core::SignalTable& signals_;
   std::vector<std::vector<int>> axis_column_;  // by task name and axis: column of its signals, -1
   std::vector<std::vector<int>> task_rows_, internal_rows_;  // by name: indices of their signals
-  // Those that were in force in the last tick.
+  // Those that the law in force has.
   std::vector<unsigned char> task_in_force_, internal_in_force_;
+  int control_ = -1;  // index of that law; -1: of another loop, or none yet
 };
 
 }  // namespace footfall::engine

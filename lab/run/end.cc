@@ -66,8 +66,8 @@ std::string judge_fall(const ControlLoop& loop, EndCause& cause) {
         fall.height, fall.height_limit, loop.behavior().robot.height_limit * 100.0);
   }
   if (fall.tilted) {
-    measured("tilt", fall.tilt, fall.tilt_limit, "rad");
-    return fmt::format("tilt {:.2f} rad, beyond {:.2f} rad", fall.tilt, fall.tilt_limit);
+    measured("tilt", fall.tilt(), fall.tilt_limit, "rad");
+    return fmt::format("tilt {:.2f} rad, beyond {:.2f} rad", fall.tilt(), fall.tilt_limit);
   }
   cause.criterion = "body_contact";
   return "a body that is no foot touched something";

@@ -37,7 +37,7 @@ TEST_F(Safety, TorquesAreClampedToEachJointsOwnLimit) {
   commands.tau = {70.0, 70.0, -170.0, -70.0, 0.0, 99.9};
   const engine::FaultFindings findings = filter.filter(commands);
   EXPECT_TRUE(findings.has(Fault::torque_limit));
-  const engine::FaultPlace& worst = findings.place[static_cast<std::size_t>(Fault::torque_limit)];
+  const engine::FaultPlace& worst = findings.place(Fault::torque_limit);
   EXPECT_EQ(worst.joint, 2);  // asked for 70 Nm too much, the others for 20
   EXPECT_EQ(worst.value, -170.0);
   EXPECT_EQ(worst.excess, 70.0);
@@ -48,7 +48,7 @@ TEST_F(Safety, TorquesAreClampedToEachJointsOwnLimit) {
 TEST_F(Safety, TheFirstTickHasNoStepAndLaterOnesAreOfWhatIsSent) {
   hal::Commands commands;
   commands.tau[0] = 40.0;
-  EXPECT_FALSE(filter.filter(commands).any);
+  EXPECT_FALSE(filter.filter(commands).any());
   EXPECT_EQ(filter.torque_step(), 0.0);
   commands.tau[0] = 44.9;
   EXPECT_FALSE(filter.filter(commands).has(Fault::torque_step));
@@ -57,8 +57,7 @@ TEST_F(Safety, TheFirstTickHasNoStepAndLaterOnesAreOfWhatIsSent) {
   EXPECT_TRUE(filter.filter(commands).has(Fault::torque_step));
   EXPECT_NEAR(filter.torque_step(), 5.1, 1e-12);
   commands.tau = {50.0, 6.0, -8.0};  // the largest of two steps, with its sign
-  const engine::FaultPlace place =
-      filter.filter(commands).place[static_cast<std::size_t>(Fault::torque_step)];
+  const engine::FaultPlace place = filter.filter(commands).place(Fault::torque_step);
   EXPECT_EQ(place.joint, 2);
   EXPECT_EQ(place.value, -8.0);
   filter.filter(commands);
@@ -111,7 +110,7 @@ TEST_F(Safety, WithoutABoundNothingIsHeldBackAndWhatIsNotFiniteIsLetGoAtOnce) {
 TEST_F(Safety, AStandingRobotIsInOrder) {
   model::ControlModel model(robot);
   model.update(standing_state(robot));
-  EXPECT_FALSE(filter.check_state({}, {}, model).any);
+  EXPECT_FALSE(filter.check_state({}, {}, model).any());
 }
 
 TEST_F(Safety, HeightIsCountedFromTheLowestContactPoint) {
@@ -119,7 +118,7 @@ TEST_F(Safety, HeightIsCountedFromTheLowestContactPoint) {
   model::State state = standing_state(robot);
   state.p_WB[2] += 10.0;  // on a roof
   model.update(state);
-  EXPECT_FALSE(filter.check_state({}, {}, model).any);
+  EXPECT_FALSE(filter.check_state({}, {}, model).any());
   for (const std::size_t leg : {0U, 3U}) {
     state.q[leg + 1] = -1.4;
     state.q[leg + 2] = 2.8;
