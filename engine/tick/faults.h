@@ -18,7 +18,7 @@ struct FaultPlace {
   double value;
   double excess;  // beyond the limit; the largest is kept
 };
-inline constexpr FaultPlace kNoPlace{-1, 0.0, 0.0};
+inline constexpr FaultPlace kWithoutPlace{-1, 0.0, 0.0};
 
 // What one check found in one tick, as a set of faults. Six of them are made in a tick: only places
 // of faults that were found have a value.
@@ -26,7 +26,7 @@ class FaultFindings {
  public:
   FaultFindings() noexcept {}  // NOLINT: place_ on purpose without a value
 
-  void add(core::Fault fault, const FaultPlace& where = kNoPlace) noexcept {
+  void add(core::Fault fault, const FaultPlace& where = kWithoutPlace) noexcept {
     const auto f = static_cast<std::size_t>(fault);
     if (!found_[f] || where.excess > place_[f].excess) place_[f] = where;
     found_[f] = any_ = true;
@@ -54,8 +54,8 @@ enum class LoopState : std::uint8_t {
 class FaultMonitor {
  public:
   explicit FaultMonitor(const behaviors::Behavior& behavior) : behavior_(behavior) {
-    last_place_.fill(kNoPlace);
-    worst_place_.fill(kNoPlace);
+    last_place_.fill(kWithoutPlace);
+    worst_place_.fill(kWithoutPlace);
   }
 
   void begin_tick() noexcept;
