@@ -1,5 +1,6 @@
 // The root of a behavior file and its sections except states and tasks; see language.h.
 #include "behaviors/language/language.h"
+#include "model/robot/torque_loop.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -23,7 +24,7 @@ constexpr KeySpec kBehaviorRows[] = {
     key("events", by_name(text_of("a description")),
         "events that may be raised externally, each with a description"),
     key("gains", map_of(kGainTablesKeys), "tables of task gains, and their ranges"),
-    key("torque_loop", by_name(map_of(kTorqueLoopKeys)),
+    key("torque_loop", by_name(map_of(model::kTorqueLoopKeys)),
         "tables of the actuators' own gains, chosen in stacks and states"),
     key("planners", by_name(map_of(kPlannerKeys)), "planners that states may `invoke`"),
     key("stacks", by_name(map_of(kStackKeys)), "named sets of contacts, tasks and internal forces"),
@@ -80,12 +81,6 @@ constexpr KeySpec kGainTablesRows[] = {
 };
 constexpr ValueSpec kGainTable = map_of(kGainTableKeys);
 constexpr ValueSpec kGains = map_of(kGainsKeys);
-
-constexpr KeySpec kTorqueLoopRows[] = {
-    key("p", by_axis(quantity(kNone)), "motor torque per spring torque error, by joint"),
-    key("i", by_axis(quantity(kRate)), "motor torque per integral of that error, by joint"),
-    key("d", by_axis(quantity(kTime)), "motor torque per rate of that error, by joint"),
-};
 
 constexpr WordSpec kPlannerTypeRows[] = {
     {"velocity_reversal",
@@ -184,12 +179,6 @@ constinit const core::KeyTable kGainsKeys = {
     .keys = kGainsRows,
     .one_of = {"kp ki kd"},
     .part = true};
-constinit const core::KeyTable kTorqueLoopKeys = {
-    .id = "torque_loop",
-    .doc =
-        "Gains of the actuators' own torque control: one number for all joints, or a map by joint "
-        "(globs such as \"*knee\"; exact names first).",
-    .keys = kTorqueLoopRows};
 constinit const core::KeyTable kPlannerKeys = {.id = "planner",
                                                .doc = "Computes plans outside of the tick.",
                                                .keys = kPlannerRows,

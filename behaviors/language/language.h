@@ -15,7 +15,6 @@ extern const core::KeyTable kGainRangesKeys;
 extern const core::KeyTable kScriptsKeys;
 extern const core::KeyTable kGainTableKeys;  // one table: gains by task
 extern const core::KeyTable kGainsKeys;      // kp, ki, kd
-extern const core::KeyTable kTorqueLoopKeys;
 extern const core::KeyTable kPlannerKeys;
 extern const core::KeyTable kKappaKeys;
 extern const core::KeyTable kReachKeys;

@@ -20,6 +20,7 @@ struct TorqueLoopGains {
   double p = 0.0, i = 0.0;                    // of the torque error
   double velocity_p = 0.0, velocity_i = 0.0;  // cascade
   double forward = 1.0, damping = 0.0;        // direct
+  double observer = 0.0;                      // direct, Hz
   Damping damps = Damping::motor;
 };
 

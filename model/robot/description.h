@@ -11,6 +11,7 @@
 #include "core/diagnostics/diagnostics.h"
 #include "core/fault.h"
 #include "core/yaml/yaml.h"
+#include "hal/actuators/torque_loop.h"
 
 namespace footfall::model {
 
@@ -21,8 +22,21 @@ struct JointDescription {
   double position_max = 0.0;  // rad
   double torque_limit = 0.0;  // N m, symmetric
   double posture = 0.0;       // rad, nominal
-  double spring = 0.0;        // N m/rad, 0: no series elasticity given
+  // Of its series-elastic actuator; 0: none.
+  double spring = 0.0;        // N m/rad, nominal
   double rotor = 0.0;         // kg m^2, reflected
+  double motor_torque = 0.0;  // N m, largest; 0: unlimited
+  double motor_speed = 0.0;   // rad/s, largest; 0: unlimited
+  core::Mark mark;            // of its name
+};
+
+// The drives between commands and joints, where the joints have series-elastic actuators.
+struct DriveDescription {
+  double rate = 12'000.0;        // Hz, of the torque loops
+  double velocity_filter = 0.0;  // Hz, of the motor rate from its encoder; 0: none
+  // Gains at the start, by joint; empty: the robot does not tell.
+  std::vector<hal::TorqueLoopGains> torque_loop;
+  core::Mark mark;  // of the section
 };
 
 enum class ContactType { point, surface, fixed };
@@ -64,6 +78,7 @@ struct RobotDescription {
   std::int64_t rate_mhz = 1'000'000;  // servo rate in millihertz (exact)
   double standing_height = 0.0;       // m, origin of the floating base above the ground
   std::vector<JointDescription> joints;
+  DriveDescription drives;
   std::vector<JointGroup> groups;
   std::vector<ContactDescription> contacts;
   std::vector<PointDescription> points;

@@ -1,6 +1,8 @@
 // Keys and words of a robot file; see keys.h.
 #include "model/robot/keys.h"
 
+#include "model/robot/torque_loop.h"
+
 namespace footfall::model {
 namespace {
 
@@ -33,6 +35,7 @@ constexpr KeySpec kRobotRows[] = {
         .otherwise("0"),
     key("joints", by_name(map_of(kJointKeys)), "actuated joints, in the order of commands and logs")
         .required(),
+    key("drives", map_of(kDrivesKeys), "torque loops of series-elastic actuators"),
     key("groups", by_name(list(name_of("a joint"))), "lists of joints by name, with globs"),
     key("contacts", by_name(map_of(kContactKeys)), "points that can touch the world"),
     key("points", by_name(map_of(kPointKeys)), "points that tasks can control"),
@@ -51,6 +54,22 @@ constexpr KeySpec kJointRows[] = {
 constexpr KeySpec kSeaRows[] = {
     key("spring", quantity(kTorque, "a stiffness"), "its stiffness, Nm/rad"),
     key("rotor", quantity(kInertia), "inertia of the motor, seen from the joint"),
+    key("torque", quantity(kTorque), "largest of the motor, seen from the joint").otherwise("none"),
+    key("speed", quantity(kRate, "an angular velocity"),
+        "of the motor, from which no torque drives it any faster; from 80 % on the torque fades")
+        .otherwise("none"),
+};
+
+constexpr KeySpec kDrivesRows[] = {
+    key("rate", quantity(kRate, "a rate in Hz"), "of the torque loops; a multiple of the physics'")
+        .otherwise("12 kHz"),
+    key("velocity_filter", quantity(kRate, "a frequency in Hz"),
+        "cutoff of the motor's velocity from its encoder, first order")
+        .otherwise("none"),
+    key("torque_loop", map_of(kTorqueLoopKeys),
+        "gains at the start; keys of the other type are what a behavior's table of that type does "
+        "not name")
+        .required(),
 };
 
 constexpr WordSpec kContactTypeRows[] = {
@@ -131,6 +150,8 @@ constinit const core::KeyTable kJointKeys = {
     .id = "joint", .doc = "An actuated joint.", .keys = kJointRows};
 constinit const core::KeyTable kSeaKeys = {
     .id = "sea", .doc = "A series-elastic actuator.", .keys = kSeaRows};
+constinit const core::KeyTable kDrivesKeys = {
+    .id = "drives", .doc = "The drives of series-elastic actuators.", .keys = kDrivesRows};
 constinit const core::KeyTable kContactKeys = {
     .id = "contact", .doc = "A point that can touch the world.", .keys = kContactRows};
 constinit const core::KeyTable kPointKeys = {

@@ -9,6 +9,7 @@ namespace footfall::model {
 extern const core::KeyTable kRobotKeys;  // the root of the file
 extern const core::KeyTable kJointKeys;
 extern const core::KeyTable kSeaKeys;
+extern const core::KeyTable kDrivesKeys;
 extern const core::KeyTable kContactKeys;
 extern const core::KeyTable kPointKeys;
 extern const core::KeyTable kSensorsKeys;

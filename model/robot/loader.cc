@@ -14,6 +14,7 @@
 #include "core/yaml/layers.h"
 #include "core/yaml/value_reader.h"
 #include "model/robot/description.h"
+#include "model/robot/drives.h"
 #include "model/robot/fault_rules.h"
 #include "model/robot/keys.h"
 #include "model/source/mjcf_source.h"
@@ -42,6 +43,7 @@ class RobotLoader {
     core::check_keys(root, kRobotKeys, diagnostics_);
     read_head(root);
     if (const YamlNode* node = core::require_key(root, "joints", diagnostics_)) read_joints(*node);
+    if (const YamlNode* node = root.find("drives")) read_drives(*node, robot_, diagnostics_);
     if (const YamlNode* node = root.find("posture")) read_posture(*node);
     if (const YamlNode* node = root.find("groups")) read_groups(*node);
     if (const YamlNode* node = root.find("contacts")) read_contacts(*node);
@@ -100,19 +102,9 @@ class RobotLoader {
                                    *model));
   }
 
-  // A value above zero, if the key is there.
   void read_positive(const YamlNode& map, std::string_view key, core::Dimension dimension,
                      double& out) {
-    const YamlNode* const node = map.find(key);
-    if (node == nullptr) return;
-    const auto value = core::read_quantity(*node, dimension, diagnostics_);
-    if (value && *value < kTiny) {
-      diagnostics_.error(node->mark, "out-of-range",
-                         fmt::format("expected {} above zero, got {}",
-                                     core::dimension_name(dimension), core::describe(*node)));
-    } else if (value) {
-      out = *value;
-    }
+    model::read_positive(map, key, dimension, out, diagnostics_);
   }
 
   void read_joints(const YamlNode& node) {
@@ -126,6 +118,7 @@ class RobotLoader {
     for (const YamlEntry& entry : node.entries) {
       JointDescription joint;
       joint.name = entry.key;
+      joint.mark = entry.key_mark;
       core::check_name(entry, diagnostics_, "a joint's name");
       if (core::expect_map(entry.value, "a joint: {position: [MIN, MAX], torque: MAX}",
                            diagnostics_)) {
@@ -148,15 +141,7 @@ class RobotLoader {
     if (core::require_key(node, "torque", diagnostics_) != nullptr) {
       read_positive(node, "torque", core::kTorque, joint.torque_limit);
     }
-    const YamlNode* const sea = node.find("sea");
-    if (sea == nullptr) return;
-    if (!core::expect_map(*sea, "{spring: STIFFNESS, rotor: INERTIA}", diagnostics_)) return;
-    core::check_keys(*sea, kSeaKeys, diagnostics_);
-    // N m/rad: an angle has no dimension, so a stiffness is a torque here.
-    core::require_key(*sea, "spring", diagnostics_);
-    core::require_key(*sea, "rotor", diagnostics_);
-    read_positive(*sea, "spring", core::kTorque, joint.spring);
-    read_positive(*sea, "rotor", core::kInertia, joint.rotor);
+    if (const YamlNode* const sea = node.find("sea")) read_actuator(*sea, joint, diagnostics_);
   }
 
   void read_posture(const YamlNode& node) {

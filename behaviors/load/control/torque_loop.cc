@@ -1,5 +1,7 @@
 // `torque_loop:` tables: gains of the actuators' own torque loops, by joint. Parsed, checked and
 // stored; a backend with ideal actuators does not use them.
+#include "model/robot/torque_loop.h"
+
 #include <fmt/format.h>
 
 #include <limits>
@@ -46,7 +48,7 @@ void load_torque_loops(LoadContext& context) {
   for (const core::YamlEntry& entry : section->entries) {
     if (!core::check_name(entry, context.diagnostics, "the name of a torque loop")) continue;
     if (!core::expect_map(entry.value, "a map with p, i, d", context.diagnostics)) continue;
-    core::check_keys(entry.value, kTorqueLoopKeys, context.diagnostics);
+    core::check_keys(entry.value, model::kTorqueLoopKeys, context.diagnostics);
     if (entry.value.entries.empty()) {
       context.error(entry.value.mark, "missing-key", "expected at least one of p, i, d");
     }
