@@ -10,6 +10,8 @@
 namespace footfall::hal {
 namespace {
 
+constexpr std::size_t kMeasured = 3;  // values a joint on their way to the servo
+
 double counted(double angle, double resolution) noexcept {
   return resolution > 0.0 ? resolution * std::round(angle / resolution) : angle;
 }
@@ -23,36 +25,44 @@ SeriesElasticDrive::SeriesElasticDrive(DriveSettings settings) : settings_(std::
   for (const DriveJoint& joint : settings_.joints) {
     joints_.emplace_back(joint, settings_.step);
   }
-  const auto make = [this](int delay) {
+  const auto make = [this](int delay, std::size_t values) {
     Delay out;
     out.length = static_cast<std::size_t>(delay) + 1;
-    out.values.assign(out.length * joints_.size(), 0.0);
+    out.values.assign(out.length * values * joints_.size(), 0.0);
     return out;
   };
-  commands_ = make(settings_.command_delay);
-  measurements_ = make(settings_.measurement_delay);
+  commands_ = make(settings_.command_delay, 1);
+  measurements_ = make(settings_.measurement_delay, kMeasured);
   commanded_.assign(joints_.size(), 0.0);
   if (settings_.rate_cutoff > 0.0) {
     smoothing_ = 1.0 - std::exp(-2.0 * std::numbers::pi * settings_.rate_cutoff * settings_.step);
   }
 }
 
-void SeriesElasticDrive::start(std::span<const double> torques) {
+void SeriesElasticDrive::start(std::span<const double> angles, std::span<const double> torques) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
     const double deflection = torques[j] / joint.actuator.parameters().spring;
     joint.actuator.set_state({deflection, 0.0});
     joint.loop.reset();
-    joint.motor_angle = joint.counted = joint.rate = 0.0;
+    joint.motor_angle = angles[j] + deflection;
+    joint.counted = counted(joint.motor_angle, settings_.motor_resolution);
+    joint.stretched = counted(deflection, settings_.deflection_resolution);
+    joint.rate = joint.spring_rate = joint.motor_torque = 0.0;
+    joint.saturated = false;
     joint.reference = commanded_[j] = torques[j];
-    joint.measured = {joint.nominal_spring * deflection, 0.0, torques[j], false};
+    joint.measured = {joint.nominal_spring * joint.stretched, joint.counted, 0.0, false};
     for (std::size_t k = 0; k < commands_.length; ++k) {
       commands_.values[k * joints_.size() + j] = torques[j];
     }
     for (std::size_t k = 0; k < measurements_.length; ++k) {
-      measurements_.values[k * joints_.size() + j] = joint.measured.torque;
+      double* const values = &measurements_.values[(k * joints_.size() + j) * kMeasured];
+      values[0] = joint.measured.torque;
+      values[1] = joint.measured.motor_angle;
+      values[2] = 0.0;
     }
   }
+  unsampled_ = 0;
 }
 
 void SeriesElasticDrive::command(std::span<const double> references) noexcept {
@@ -64,27 +74,49 @@ void SeriesElasticDrive::change_gains(int joint, const TorqueLoopGains& gains) n
   changed.loop.change(gains, changed.seen);
 }
 
+void SeriesElasticDrive::place(std::span<const double> angles) noexcept {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    Joint& joint = joints_[j];
+    joint.actuator.set_state({joint.motor_angle - angles[j], joint.actuator.state().rate});
+  }
+}
+
 // The value of `length` - 1 steps ago; this one takes its place.
-double SeriesElasticDrive::through(Delay& delay, std::size_t joint, double value) const noexcept {
-  delay.values[delay.head * joints_.size() + joint] = value;
+double SeriesElasticDrive::through(Delay& delay, std::size_t index, double value) const noexcept {
+  const std::size_t row = delay.values.size() / delay.length;
+  delay.values[delay.head * row + index] = value;
   const std::size_t oldest = (delay.head + 1) % delay.length;
-  return delay.values[oldest * joints_.size() + joint];
+  return delay.values[oldest * row + index];
 }
 
 TorqueLoopInput SeriesElasticDrive::sense(Joint& joint, double joint_rate) const noexcept {
-  const double deflection =
-      counted(joint.actuator.state().deflection, settings_.deflection_resolution);
+  const SeriesElasticState& state = joint.actuator.state();
+  const double stretched = counted(state.deflection, settings_.deflection_resolution);
+  const double angle = counted(joint.motor_angle, settings_.motor_resolution);
   if (settings_.rate_cutoff > 0.0) {
-    const double angle = counted(joint.motor_angle, settings_.motor_resolution);
-    joint.rate += smoothing_ * ((angle - joint.counted) / settings_.step - joint.rate);
-    joint.counted = angle;
+    const auto follow = [this](double& rate, double now, double before) {
+      rate += smoothing_ * ((now - before) / settings_.step - rate);
+    };
+    follow(joint.rate, angle, joint.counted);
+    follow(joint.spring_rate, stretched, joint.stretched);
   } else {
-    joint.rate = joint.actuator.state().rate;
+    joint.rate = state.rate;
+    joint.spring_rate = state.rate - joint_rate;
   }
-  return {joint.reference, joint.nominal_spring * deflection, joint.rate, joint_rate};
+  joint.counted = angle;
+  joint.stretched = stretched;
+  return {joint.reference, joint.nominal_spring * stretched, joint.rate, joint.spring_rate};
 }
 
-void SeriesElasticDrive::step(std::size_t j, double joint_rate) noexcept {
+void SeriesElasticDrive::measure(std::size_t j, double motor_torque) noexcept {
+  Joint& joint = joints_[j];
+  joint.measured.torque = through(measurements_, j * kMeasured, joint.seen.torque);
+  joint.measured.motor_angle = through(measurements_, j * kMeasured + 1, joint.counted);
+  joint.motor_torque += through(measurements_, j * kMeasured + 2, motor_torque);
+}
+
+// One step of a joint; returns the mean spring torque.
+double SeriesElasticDrive::step(std::size_t j, double joint_rate) noexcept {
   Joint& joint = joints_[j];
   joint.reference = through(commands_, j, commanded_[j]);
   joint.seen = sense(joint, joint_rate);
@@ -92,25 +124,33 @@ void SeriesElasticDrive::step(std::size_t j, double joint_rate) noexcept {
   const SeriesElasticStep done = joint.actuator.advance(asked, joint_rate);
   joint.loop.settle(joint.seen, asked, done.motor_torque);
   joint.motor_angle += done.motor_angle;
-  DriveMeasurement& measured = joint.measured;
-  measured.torque = through(measurements_, j, joint.seen.torque);
-  measured.motor_torque += done.motor_torque / settings_.steps;
-  measured.spring += done.spring_torque / settings_.steps;
-  measured.saturated |= done.motor_torque != asked;
+  joint.saturated |= done.motor_torque != asked;
+  measure(j, done.motor_torque);
+  return done.spring_torque;
 }
 
 void SeriesElasticDrive::advance(std::span<const double> joint_rates,
                                  std::span<double> torques) noexcept {
-  for (Joint& joint : joints_) {
-    joint.measured.motor_torque = joint.measured.spring = 0.0;
-    joint.measured.saturated = false;
-  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) torques[j] = 0.0;
   for (int k = 0; k < settings_.steps; ++k) {
-    for (std::size_t j = 0; j < joints_.size(); ++j) step(j, joint_rates[j]);
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      torques[j] += step(j, joint_rates[j]) / settings_.steps;
+    }
     commands_.head = (commands_.head + 1) % commands_.length;
     measurements_.head = (measurements_.head + 1) % measurements_.length;
   }
-  for (std::size_t j = 0; j < joints_.size(); ++j) torques[j] = joints_[j].measured.spring;
+  unsampled_ += settings_.steps;
+}
+
+void SeriesElasticDrive::sample() noexcept {
+  if (unsampled_ == 0) return;
+  for (Joint& joint : joints_) {
+    joint.measured.motor_torque = joint.motor_torque / unsampled_;
+    joint.measured.saturated = joint.saturated;
+    joint.motor_torque = 0.0;
+    joint.saturated = false;
+  }
+  unsampled_ = 0;
 }
 
 const DriveMeasurement& SeriesElasticDrive::measured(int joint) const noexcept {
@@ -119,6 +159,10 @@ const DriveMeasurement& SeriesElasticDrive::measured(int joint) const noexcept {
 
 const SeriesElasticActuator& SeriesElasticDrive::actuator(int joint) const noexcept {
   return joints_[at(joint)].actuator;
+}
+
+const TorqueLoopGains& SeriesElasticDrive::gains(int joint) const noexcept {
+  return joints_[at(joint)].loop.gains();
 }
 
 }  // namespace footfall::hal

@@ -26,15 +26,16 @@ struct DriveSettings {
   int measurement_delay = 0;  // steps, from the encoders to measured()
   // Resolution of the encoders, rad; 0: exact.
   double motor_resolution = 0.0, deflection_resolution = 0.0;
-  double rate_cutoff = 0.0;  // Hz, of the motor rate from the encoder, first order; 0: exact rate
+  // Hz, of the rates of motor and spring from these, first order; 0: exact rates.
+  double rate_cutoff = 0.0;
 };
 
-// What the servo gets to know of a joint.
+// What the servo gets to know of a joint, after the measurement's delay.
 struct DriveMeasurement {
   double torque = 0.0;        // nominal spring times deflection, N m
-  double motor_torque = 0.0;  // u, N m, mean over the last advance()
-  double spring = 0.0;        // true mean spring torque over the last advance(), N m
-  bool saturated = false;     // the motor gave less than its loop asked for in the last advance()
+  double motor_angle = 0.0;   // θ by its encoder, rad
+  double motor_torque = 0.0;  // u, N m, mean since the last sample()
+  bool saturated = false;     // since then the motor gave less than its loop asked for
 };
 
 class SeriesElasticDrive {
@@ -42,47 +43,58 @@ class SeriesElasticDrive {
   // Throws std::invalid_argument as SeriesElasticActuator, and for steps or delays below 0.
   explicit SeriesElasticDrive(DriveSettings settings);
 
-  // Springs at rest but for a deflection that carries these torques, N m.
-  void start(std::span<const double> torques);
+  // At rest at these joint angles, rad; springs carry these torques, N m.
+  void start(std::span<const double> angles, std::span<const double> torques);
   // Torque references of the servo, N m.
   void command(std::span<const double> references) noexcept;
   // Other gains of a joint; its motor torque stays continuous.
   void change_gains(int joint, const TorqueLoopGains& gains) noexcept;
-  // Advances by `steps` steps with the joints' velocities of their beginning, rad/s. `torques`
-  // receives the mean spring torques, which the plant applies over that time, N m.
+  // Where the joints are now, rad: for a plant that keeps its own account of them.
+  void place(std::span<const double> angles) noexcept;
+  // Advances by `steps` steps with constant joint velocities, rad/s. `torques` receives the mean
+  // spring torques, which the plant applies over that time, N m.
   void advance(std::span<const double> joint_rates, std::span<double> torques) noexcept;
+  // Ends the time of which measured() gives means; without an advance() since the last, nothing.
+  void sample() noexcept;
 
   const DriveMeasurement& measured(int joint) const noexcept;
   const SeriesElasticActuator& actuator(int joint) const noexcept;
+  const TorqueLoopGains& gains(int joint) const noexcept;
 
  private:
   struct Joint {
     Joint(const DriveJoint& of, double step)
-        : actuator(of.actuator, step), loop(of.gains, step), nominal_spring(of.nominal_spring) {}
+        : actuator(of.actuator, step),
+          loop(of.gains, step, of.actuator.rotor),
+          nominal_spring(of.nominal_spring) {}
     SeriesElasticActuator actuator;
     TorqueLoop loop;
     double nominal_spring = 0.0;
-    double reference = 0.0;    // as the loop has it
-    double motor_angle = 0.0;  // rad, since the start
-    double counted = 0.0;      // as the motor's encoder gave it last, rad
-    double rate = 0.0;         // θ' as the loop has it, rad/s
-    TorqueLoopInput seen;      // by the last update
+    double reference = 0.0;                 // as the loop has it
+    double motor_angle = 0.0;               // rad
+    double counted = 0.0, stretched = 0.0;  // as the encoders gave θ and θ − q last, rad
+    double rate = 0.0, spring_rate = 0.0;   // θ' and θ' − q' as the loop has them, rad/s
+    TorqueLoopInput seen;                   // by the last update
+    double motor_torque = 0.0;              // sum since the last sample()
+    bool saturated = false;
     DriveMeasurement measured;
   };
-  // A ring of one value a joint and step.
+  // A ring of some values a joint and step.
   struct Delay {
     std::vector<double> values;
     std::size_t length = 1, head = 0;
   };
-  double through(Delay& delay, std::size_t joint, double value) const noexcept;
-  void step(std::size_t joint, double joint_rate) noexcept;
+  double through(Delay& delay, std::size_t value_index, double value) const noexcept;
+  double step(std::size_t joint, double joint_rate) noexcept;
   TorqueLoopInput sense(Joint& joint, double joint_rate) const noexcept;
+  void measure(std::size_t joint, double motor_torque) noexcept;
 
   DriveSettings settings_;
   std::vector<Joint> joints_;
   std::vector<double> commanded_;
   Delay commands_, measurements_;
-  double smoothing_ = 1.0;  // of the motor rate, by step
+  double smoothing_ = 1.0;  // of the rates, by step
+  int unsampled_ = 0;       // steps since the last sample()
 };
 
 }  // namespace footfall::hal

@@ -18,11 +18,16 @@ std::complex<double> output_admittance(const TorqueLoopGains& gains,
     const std::complex<double> inner = gains.velocity_p + gains.velocity_i / s;
     return (1.0 + late * inner * outer) / (rotor + late * inner);
   }
-  if (gains.damps == TorqueLoopGains::Damping::motor) {
-    return (1.0 + late * outer) / (rotor + late * gains.damping);
-  }
-  // θ' − q' = τ_s'/k.
-  return (1.0 + late * (outer + gains.damping * s / actuator.spring)) / rotor;
+  // u = −(P + I/s) τ_s − D (θ' or τ_s'/k) − Q (J s θ' + τ_s − u), Q = w/(s + w): with Q/(1 − Q) =
+  // w/s the observer adds w/s (J s θ' + τ_s) and divides the law by 1 − Q.
+  const double w = 2.0 * std::numbers::pi * gains.observer;
+  const std::complex<double> share = 1.0 + w / s;  // 1/(1 − Q)
+  const bool of_motor = gains.damps == TorqueLoopGains::Damping::motor;
+  const std::complex<double> of_torque =
+      share * (outer + (of_motor ? 0.0 : gains.damping * s / actuator.spring)) + w / s;
+  const std::complex<double> of_rate =
+      share * (of_motor ? gains.damping : 0.0) + w * actuator.rotor;
+  return (1.0 + late * of_torque) / (rotor + late * of_rate);
 }
 
 double passivity_margin(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator) {

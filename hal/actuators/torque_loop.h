@@ -2,11 +2,13 @@
 // inner step. Two laws, which the literature's gains mix up:
 //
 //   cascade   ω_r = P_t e + I_t ∫e,   u = P_v (ω_r − θ') + I_v ∫(ω_r − θ')          (Vallery 2007)
-//   direct    u = F τ_d + P e + I ∫e − D (θ' or θ' − q')
+//   direct    u = F τ_d + P e + I ∫e − D (θ' or θ' − q') − r
 //
 // e = τ_d − τ_s; integrals by Euler's forward rule. P_t in rad/s per N m, I_t in rad/s^2 per N m
 // (Table I with the corrected units, erratum E19); P_v in N m s/rad, I_v in N m/rad; F, P plain
-// numbers; I in 1/s; D in N m s/rad. No allocation; safe for the tick.
+// numbers; I in 1/s; D in N m s/rad. r: the observer's estimate of what disturbs the rotor (N m, in
+// the direction of u), from its momentum: r' = w (J θ'' − u + τ_s − r). No allocation; safe for the
+// tick.
 #pragma once
 
 #include <cstdint>
@@ -20,20 +22,21 @@ struct TorqueLoopGains {
   double p = 0.0, i = 0.0;                    // of the torque error
   double velocity_p = 0.0, velocity_i = 0.0;  // cascade
   double forward = 1.0, damping = 0.0;        // direct
-  double observer = 0.0;                      // direct, Hz
+  double observer = 0.0;                      // direct: w/2π, Hz; 0: none
   Damping damps = Damping::motor;
 };
 
 struct TorqueLoopInput {
-  double reference = 0.0;   // τ_d, N m
-  double torque = 0.0;      // τ_s as measured, N m
-  double motor_rate = 0.0;  // θ' as measured, rad/s
-  double joint_rate = 0.0;  // q' as measured, rad/s
+  double reference = 0.0;    // τ_d, N m
+  double torque = 0.0;       // τ_s as measured, N m
+  double motor_rate = 0.0;   // θ' as measured, rad/s
+  double spring_rate = 0.0;  // θ' − q' as measured, rad/s
 };
 
 class TorqueLoop {
  public:
-  TorqueLoop(const TorqueLoopGains& gains, double step);
+  // rotor: J, kg m^2, as the loop knows it; only the observer needs it.
+  TorqueLoop(const TorqueLoopGains& gains, double step, double rotor = 0.0);
 
   // The motor torque for which the law asks, N m.
   double ask(const TorqueLoopInput& input) const noexcept;
@@ -51,9 +54,12 @@ class TorqueLoop {
 
  private:
   double law(const TorqueLoopInput& input) const noexcept;
+  double bandwidth() const noexcept;  // of the observer, rad/s
+  double disturbance(double motor_rate) const noexcept;
 
   TorqueLoopGains gains_;
-  double step_;
+  double step_, rotor_;
+  double momentum_ = 0.0;           // J θ' as it would be with r as the only disturbance, N m s
   double torque_integral_ = 0.0;    // of e times its gain: in rad/s (cascade) or N m (direct)
   double velocity_integral_ = 0.0;  // N m
   double offset_ = 0.0;             // N m, what is left of a change of gains

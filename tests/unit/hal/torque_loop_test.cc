@@ -19,7 +19,7 @@ using hal::TorqueLoopInput;
 
 TEST(TorqueLoop, TheFirstOutputIsTheProportionalPart) {
   const TorqueLoopInput input{
-      .reference = 10.0, .torque = 4.0, .motor_rate = 0.5, .joint_rate = 0.2};
+      .reference = 10.0, .torque = 4.0, .motor_rate = 0.5, .spring_rate = 0.3};
   EXPECT_DOUBLE_EQ(TorqueLoop(kCascade, kLoopStep).ask(input), 25.0 * (0.8 * 6.0 - 0.5));
   EXPECT_DOUBLE_EQ(TorqueLoop(kDirect, kLoopStep).ask(input), 10.0 + 20.0 * 6.0 - 25.0 * 0.5);
   TorqueLoopGains spring = kDirect;
@@ -52,7 +52,8 @@ double after(TorqueLoop& loop, hal::SeriesElasticActuator& actuator, double refe
   for (int k = 0; k < time / kLoopStep; ++k) {
     const double torque = actuator.spring_torque();
     largest = std::max(largest, torque);
-    const TorqueLoopInput input{reference, torque, actuator.state().rate, 0.0};
+    const double rate = actuator.state().rate;
+    const TorqueLoopInput input{reference, torque, rate, rate};
     const double asked = loop.ask(input);
     loop.settle(input, asked, actuator.advance(asked, 0.0).motor_torque);
   }
@@ -67,6 +68,29 @@ TEST(TorqueLoop, BothReachTheirReferenceOnALockedOutput) {
     after(loop, actuator, 30.0, 3.0);
     EXPECT_NEAR(actuator.spring_torque(), 30.0, 0.15);
   }
+}
+
+// Coulomb friction makes a loop without integral miss by a part of it, F = f/(1 + P).
+TEST(TorqueLoop, AnObserverCancelsTheFrictionOfTheRotor) {
+  const hal::SeriesElasticParameters rough{
+      .spring = 415.0, .rotor = 0.0872756, .viscous = 0.5, .coulomb = 5.0};
+  TorqueLoopGains gains = kDirect;
+  gains.i = 0.0;
+  const auto missed = [&] {
+    hal::SeriesElasticActuator actuator(rough, kLoopStep);
+    TorqueLoop loop(gains, kLoopStep, rough.rotor);
+    // A slow ramp, so that the rotor turns and friction has its full amount.
+    double reference = 0.0;
+    for (; reference < 30.0; reference += 5.0 * kLoopStep) {
+      after(loop, actuator, reference, 0.5 * kLoopStep);
+    }
+    return reference - actuator.spring_torque();
+  };
+  const double without = missed();
+  gains.observer = 20.0;
+  const double with = missed();
+  EXPECT_NEAR(without, 5.0 / 21.0, 0.15);  // and the lag of the ramp
+  EXPECT_LT(std::abs(with), 0.25 * without);
 }
 
 // At the limit the integrals stand still; without that the overshoot would grow with the time spent
@@ -102,10 +126,11 @@ TEST(TorqueLoop, AChangeOfGainsLeavesTheCommandContinuous) {
             .p = 40.0 * part(random),
             .i = part(random) < 0.5 ? 0.0 : 20.0 * part(random),
             .forward = part(random),
-            .damping = 20.0 * part(random)};
+            .damping = 20.0 * part(random),
+            .observer = part(random) < 0.5 ? 0.0 : 30.0 * part(random)};
   };
   for (int trial = 0; trial < 1000; ++trial) {
-    TorqueLoop loop(any(), kLoopStep), kept = loop;
+    TorqueLoop loop(any(), kLoopStep, 0.1), kept = loop;
     TorqueLoopInput input{10.0 * normal(random), 10.0 * normal(random), normal(random),
                           normal(random)};
     for (int k = 0; k < 100; ++k) one_step(loop, input);
@@ -114,7 +139,7 @@ TEST(TorqueLoop, AChangeOfGainsLeavesTheCommandContinuous) {
     loop.change(other, input);
     EXPECT_NEAR(one_step(loop, input), one_step(kept, input), 1e-9);
     // What was added is gone after some time constants: the law of the new gains alone is left.
-    if (other.i != 0.0 || other.velocity_i != 0.0) continue;
+    if (other.i != 0.0 || other.velocity_i != 0.0 || other.observer != 0.0) continue;
     for (int k = 0; k < 12000; ++k) one_step(loop, input);  // 50 time constants
     EXPECT_NEAR(one_step(loop, input), TorqueLoop(other, kLoopStep).ask(input), 1e-9);
   }
