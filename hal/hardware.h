@@ -5,6 +5,7 @@
 
 #include "core/capacities.h"
 #include "core/fault.h"
+#include "hal/actuators/torque_loop.h"
 #include "hal/sensor_fields.h"
 
 namespace footfall::hal {
@@ -23,6 +24,11 @@ class Hardware {
   virtual void safe_stop() noexcept = 0;
   // Whether its actuators have a torque loop whose gains a behavior's `torque_loop:` can set.
   virtual bool uses_torque_loop() const { return false; }
+  // Gains of a joint's torque loop from the next write() on; the motor's torque stays continuous.
+  virtual void set_torque_loop(int joint, const TorqueLoopGains& gains) noexcept {
+    (void)joint;
+    (void)gains;
+  }
 };
 
 }  // namespace footfall::hal

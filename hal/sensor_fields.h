@@ -26,6 +26,10 @@ struct Sensors {
   std::array<bool, core::kMaxContacts> contact{};                 // foot switch closed
   std::array<std::array<double, 3>, core::kMaxContacts> force{};  // N, ground on robot, world
 
+  // Of series-elastic actuators, seen from the joint; else 0.
+  std::array<double, core::kMaxJoints> motor{};         // motor angle, rad
+  std::array<double, core::kMaxJoints> motor_torque{};  // N m, mean since the last tick
+
   bool imu_fresh = true;    // new IMU data arrived
   bool mocap_fresh = true;  // new motion capture data arrived
 
@@ -37,6 +41,7 @@ struct Sensors {
 
   bool body_contact = false;   // a body other than a declared contact touches (simulator)
   bool backend_fault = false;  // the backend raised a warning or reset itself (simulator)
+  bool motor_saturated = false;  // a motor gave less than its torque loop asked for
 };
 
 // Written once a tick.
@@ -92,6 +97,8 @@ inline constexpr std::tuple kSensorFields{
     NumberField{&Sensors::p_WB, "p_WB", "m", SensorGroup::truth, "v_WB"},
     NumberField{&Sensors::q_WB, "q_WB", "", SensorGroup::truth},
     NumberField{&Sensors::w_WB_B, "w_WB_B", "rad/s", SensorGroup::truth},
+    NumberField{&Sensors::motor, "motor", "rad", SensorGroup::joints},
+    NumberField{&Sensors::motor_torque, "motor_torque", "N m", SensorGroup::joints},
 };
 // Bit 1 is of the read as a whole: something new arrived.
 inline constexpr std::uint64_t kFreshBit = 1;
@@ -101,6 +108,8 @@ inline constexpr std::tuple kFlagFields{
     FlagField{&Sensors::backend_fault, 8, "the backend has a fault", SensorGroup::backend},
     FlagField{&Sensors::imu_fresh, 16, "the IMU's data are new", SensorGroup::imu, true},
     FlagField{&Sensors::mocap_fresh, 32, "motion capture's data are new", SensorGroup::mocap, true},
+    FlagField{&Sensors::motor_saturated, 64, "a motor gave less than its loop asked for",
+              SensorGroup::joints},
     FlagField{&Sensors::contact, 256, "contact c is closed", SensorGroup::contacts},
 };
 

@@ -73,6 +73,9 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
   const double step = model_->opt.timestep;
   const auto delay = static_cast<std::size_t>(std::llround(world.actuators.command_delay / step));
   delay_line_.assign(delay + 1, std::vector<double>(robot.joints.size(), 0.0));
+  if (world.actuators.model == ActuatorModel::series_elastic) {
+    drive_.emplace(drive_settings(world.actuators, robot, world.physics.steps_per_tick));
+  }
 }
 
 MujocoBackend::~MujocoBackend() {
@@ -106,6 +109,11 @@ void MujocoBackend::start() {
   place_at_posture();
   for (auto& line : delay_line_) std::fill(line.begin(), line.end(), 0.0);
   delay_head_ = 0;
+  if (drive_) {
+    for (std::size_t j = 0; j < qpos_.size(); ++j) joint_angles_[j] = data_->qpos[qpos_[j]];
+    drive_torques_ = {};
+    drive_->start({joint_angles_.data(), qpos_.size()}, {drive_torques_.data(), qpos_.size()});
+  }
   pushes_ = {};
   held_ = {};
   tick_ = 0;
@@ -127,6 +135,17 @@ bool MujocoBackend::read(hal::Sensors& s) noexcept {
     s.q[j] = data_->qpos[qpos_[j]];
     s.qd[j] = data_->qvel[dof_[j]];
     s.tau[j] = data_->actuator_force[actuator_[j]];
+  }
+  s.motor_saturated = false;
+  if (drive_) {
+    drive_->sample();
+    for (std::size_t j = 0; j < qpos_.size(); ++j) {
+      const hal::DriveMeasurement& measured = drive_->measured(static_cast<int>(j));
+      s.tau[j] = measured.torque;
+      s.motor[j] = measured.motor_angle;
+      s.motor_torque[j] = measured.motor_torque;
+      s.motor_saturated |= measured.saturated;
+    }
   }
   s.has_truth = true;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -168,16 +187,46 @@ void MujocoBackend::sense_contacts(hal::Sensors& s) noexcept {
 
 void MujocoBackend::write(const hal::Commands& commands) noexcept {
   for (int step = 0; step < world_.physics.steps_per_tick; ++step) {
-    std::vector<double>& slot = delay_line_[delay_head_];
-    std::copy_n(commands.tau.begin(), slot.size(), slot.begin());
-    delay_head_ = (delay_head_ + 1) % delay_line_.size();
-    const std::vector<double>& now = delay_line_[delay_head_];  // oldest: written `delay` ago
-    for (std::size_t j = 0; j < now.size(); ++j)
-      data_->ctrl[actuator_[j]] = stopped_ ? 0.0 : now[j];
+    if (drive_) {
+      advance_drive(commands);
+    } else {
+      apply_commands(commands);
+    }
     apply_forces();
     mj_step(model_, data_);
   }
   ++tick_;
+}
+
+// Ideal actuators: the commands of `delay` ago are the joint torques.
+void MujocoBackend::apply_commands(const hal::Commands& commands) noexcept {
+  std::vector<double>& slot = delay_line_[delay_head_];
+  std::copy_n(commands.tau.begin(), slot.size(), slot.begin());
+  delay_head_ = (delay_head_ + 1) % delay_line_.size();
+  const std::vector<double>& now = delay_line_[delay_head_];  // oldest: written `delay` ago
+  for (std::size_t j = 0; j < now.size(); ++j) data_->ctrl[actuator_[j]] = stopped_ ? 0.0 : now[j];
+}
+
+// Springs' torques over a physics step. MuJoCo's velocities are those of the middle between two
+// positions (semi-implicit Euler): with the joints placed half a step back, their mean angle over
+// the drive's step is the present one, and the coupling neither adds nor takes energy. The spring
+// is no motor of the model: its torque is not clamped by a ctrlrange.
+void MujocoBackend::advance_drive(const hal::Commands& commands) noexcept {
+  const std::size_t n = qpos_.size();
+  const double half = 0.5 * model_->opt.timestep;
+  for (std::size_t j = 0; j < n; ++j) {
+    joint_rates_[j] = data_->qvel[dof_[j]];
+    joint_angles_[j] = data_->qpos[qpos_[j]] - half * joint_rates_[j];
+    drive_torques_[j] = stopped_ ? 0.0 : commands.tau[j];
+  }
+  drive_->command({drive_torques_.data(), n});
+  drive_->place({joint_angles_.data(), n});
+  drive_->advance({joint_rates_.data(), n}, {drive_torques_.data(), n});
+  for (std::size_t j = 0; j < n; ++j) data_->qfrc_applied[dof_[j]] = drive_torques_[j];
+}
+
+void MujocoBackend::set_torque_loop(int joint, const hal::TorqueLoopGains& gains) noexcept {
+  if (drive_) drive_->change_gains(joint, gains);
 }
 
 int MujocoBackend::find_body(const std::string& name) const {

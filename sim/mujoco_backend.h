@@ -4,9 +4,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "hal/actuators/drive.h"
 #include "hal/hardware.h"
 #include "model/robot/description.h"
 #include "sim/world/description.h"
@@ -60,6 +62,10 @@ class MujocoBackend final : public hal::Hardware {
   bool read(hal::Sensors& sensors) noexcept override;
   void write(const hal::Commands& commands) noexcept override;
   void safe_stop() noexcept override;
+  bool uses_torque_loop() const override { return drive_.has_value(); }
+  void set_torque_loop(int joint, const hal::TorqueLoopGains& gains) noexcept override;
+  // Of series-elastic actuators; nullptr: they are ideal.
+  const hal::SeriesElasticDrive* drive() const noexcept { return drive_ ? &*drive_ : nullptr; }
 
   // Starts a push on a body's CoM; direction in rad from the robot's heading, 0 forward, pi/2 left.
   // Names were checked by find_body(). False if kMaxPushes are active.
@@ -77,6 +83,8 @@ class MujocoBackend final : public hal::Hardware {
   // objects even if the public constructor throws.
   struct Empty {};
   MujocoBackend(Empty, const model::RobotDescription& robot, const WorldDescription& world);
+  void apply_commands(const hal::Commands& commands) noexcept;
+  void advance_drive(const hal::Commands& commands) noexcept;
   void apply_forces() noexcept;
   void apply_hold(const HeldBody& held) noexcept;
   void sense_contacts(hal::Sensors& sensors) noexcept;
@@ -91,6 +99,8 @@ class MujocoBackend final : public hal::Hardware {
   std::vector<int> contact_of_geom_;        // robot contact index, -1: ground, -2: another body
   std::vector<std::vector<double>> delay_line_;  // commands on their way, one a physics step
   std::size_t delay_head_ = 0;
+  std::optional<hal::SeriesElasticDrive> drive_;
+  std::array<double, core::kMaxJoints> joint_angles_{}, joint_rates_{}, drive_torques_{};
   std::array<ActivePush, kMaxPushes> pushes_{};
   std::array<HeldBody, kMaxHeld> held_{};
   std::int64_t warnings_at_start_ = 0;

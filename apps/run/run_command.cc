@@ -171,7 +171,7 @@ int run_behavior(RunOptions options) {
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
   check_duration(options, behavior->robot);
-  check_links_of(declared, behavior->robot);
+  check_world_fits(declared, behavior->robot);
   model::Draw drawn;
   const sim::WorldDescription world = draw_world(options, *behavior, declared, drawn);
   Backend backend = make_backend(options, *behavior, world);

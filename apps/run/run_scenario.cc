@@ -50,7 +50,7 @@ CheckedScenario load_checked(const RunOptions& options) {
                                            lab::place_in_file(scenario, scenario.world_mark));
   world.variation = lab::variation_over(scenario, world.variation);
   world = declared_world(options, std::move(world));
-  check_links_of(world, scenario.behavior->robot);
+  check_world_fits(world, scenario.behavior->robot);
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics, physics_world(world));

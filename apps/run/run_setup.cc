@@ -58,9 +58,9 @@ sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescri
   return world;
 }
 
-void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot) {
+void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot) {
   core::Diagnostics diagnostics;
-  check_links_of(world, robot, diagnostics);
+  check_world_fits(world, robot, diagnostics);
   print_diagnostics(diagnostics);
   if (diagnostics.has_errors()) throw InputError("");
 }

@@ -34,8 +34,8 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
 // The world as a run declares it: without what is drawn if the options say so, hence judged with
 // what it uses.
 sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescription world);
-// Refuses links that the world names and the robot lacks: prints them and throws InputError.
-void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot);
+// Refuses a world that does not fit the robot: prints why and throws InputError.
+void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot);
 // The world as this run's seed draws it, and the push that it draws into `spec`, which the backend
 // must then bring. The stub has nothing to draw. Throws InputError if a joint could begin beyond
 // its limits.

@@ -200,8 +200,9 @@ behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world) {
           world.actuators.command_delay + world.variation.most_command_delay()};
 }
 
-void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot,
+void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
                     core::Diagnostics& diagnostics) {
+  sim::check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
   if (world.links.empty() && world.variation.links.empty()) return;  // spares reading the model
   try {
     sim::check_links(world, model::body_names(robot.model_path), diagnostics);

@@ -97,8 +97,8 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(
 // frequency, so that it crosses 1 once, and delay only takes phase from it there.
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world);
 
-// Reports links that the world names and the robot lacks.
-void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot,
+// Reports what the world needs and the robot lacks: links that it names, actuators.
+void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
                     core::Diagnostics& diagnostics);
 
 // Prints every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is

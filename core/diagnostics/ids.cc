@@ -12,6 +12,7 @@ constexpr Severity kError = Severity::error;
 constexpr Severity kWarning = Severity::warning;
 
 constexpr auto kIds = std::to_array<DiagnosticInfo>({
+    {"actuators", kError, "actuators of a world that the robot cannot have"},
     {"alike-seeds", kWarning, "several seeds where a seed draws nothing: one run many times"},
     {"ambiguous-state", kError, "several states fit the name: write more of its dotted path"},
     {"append", kError, "`KEY+:` needs a list here and a list of that name in the base"},

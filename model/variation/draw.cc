@@ -26,6 +26,8 @@ enum class Stream : std::uint32_t {
   com,
   command_delay,
   push,
+  spring,
+  coulomb,
 };
 
 class Source {
@@ -85,10 +87,12 @@ std::optional<double> Variation::least_friction() const {
 
 double Variation::most_command_delay() const { return command_delay.most(); }
 
+bool Variation::draws_actuators() const { return is_drawn(spring) || is_drawn(coulomb); }
+
 bool Variation::depends_on_seed() const {
   const auto varies = [](const Spread& spread) { return spread.least() < spread.most(); };
   return varies(velocity) || varies(joints) || varies(rates) || varies(friction) || varies(mass) ||
-         varies(command_delay) || push.impulse > 0.0 ||
+         varies(command_delay) || varies(spring) || varies(coulomb) || push.impulse > 0.0 ||
          std::ranges::any_of(com, [&](const auto& link) { return varies(link.second); });
 }
 
@@ -136,6 +140,16 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
   if (is_drawn(v.command_delay)) {
     out.command_delay = Source(seed, Stream::command_delay).of(v.command_delay);
     tell(kDelayName, {*out.command_delay});
+  }
+  if (is_drawn(v.spring)) {
+    Source source(seed, Stream::spring);
+    for (int j = 0; j < joints; ++j) out.springs.push_back(1.0 + source.of(v.spring));
+    tell("actuators.spring", out.springs);
+  }
+  if (is_drawn(v.coulomb)) {
+    Source source(seed, Stream::coulomb);
+    for (int j = 0; j < joints; ++j) out.coulomb.push_back(source.of(v.coulomb));
+    tell("actuators.coulomb_Nm", out.coulomb);
   }
   if (v.push.impulse > 0.0) {
     Source source(seed, Stream::push);

@@ -44,6 +44,7 @@ YamlNode other_links_off(const YamlNode& off) {
 const KeyTable* table_below(std::string_view key) {
   if (key == "start") return &kVariedStartKeys;
   if (key == "control_model") return &kVariedModelKeys;
+  if (key == "actuators") return &kVariedActuatorsKeys;
   return nullptr;
 }
 

@@ -34,6 +34,13 @@ constexpr KeySpec kVariedModelRows[] = {
         "shift of a link's centre of mass, x and y each, by link"),
 };
 
+constexpr KeySpec kVariedActuatorsRows[] = {
+    key("spring", map_of(kSpreadKeys), any_quantity(),
+        "relative change of each actuator's spring, beside what its drive counts on"),
+    key("coulomb", map_of(kSpreadKeys), any_quantity(),
+        "Coulomb friction of each actuator, in the place of the world's"),
+};
+
 constexpr KeySpec kVariedPushRows[] = {
     key("impulse", quantity(kImpulse), "force times duration").required(),
     key("between", pair(quantity(kTime)), "times between which it comes").required(),
@@ -47,6 +54,7 @@ constexpr KeySpec kVariationRows[] = {
     key("control_model", map_of(kVariedModelKeys),
         "what the controller believes, beside the truth"),
     key("command_delay", map_of(kSpreadKeys), any_quantity(), "added to that of the actuators"),
+    key("actuators", map_of(kVariedActuatorsKeys), "of a world with series-elastic actuators"),
     key("push", map_of(kVariedPushKeys), "a push in any horizontal direction"),
 };
 
@@ -155,6 +163,19 @@ class Reader {
     }
   }
 
+  void actuators(const YamlNode& node, Variation& out) {
+    if (is_off(node)) {
+      out.spring = out.coulomb = {};
+      return;
+    }
+    if (!expect_map(node, "{spring: ..., coulomb: ...}", diagnostics_)) return;
+    check_keys(node, kVariedActuatorsKeys, diagnostics_);
+    spread(node, "spring", kNone, -0.9, 9.0, out.spring);
+    spread(node, "coulomb", kTorque, 0.0, kInfinity, out.coulomb);
+    refuse_normal(node, "coulomb", out.coulomb,
+                  "friction cannot be negative: expected {range: [0.5 Nm, 1.5 Nm]}");
+  }
+
   void push(const YamlNode& node, Variation& out) {
     out.push = {};
     if (is_off(node)) return;
@@ -215,6 +236,10 @@ Variation read_variation(const YamlNode& node, const Variation& base, Diagnostic
   reader.spread(node, "command_delay", kTime, 0.0, 0.02, out.command_delay);
   reader.refuse_normal(node, "command_delay", out.command_delay,
                        "a delay cannot be negative: expected {range: [0 s, 667 us]}");
+  if (const YamlNode* actuators = node.find("actuators")) {
+    reader.actuators(*actuators, out);
+    out.actuators = {"actuators", file_of(actuators->mark, diagnostics), actuators->mark};
+  }
   if (const YamlNode* push = node.find("push")) reader.push(*push, out);
   return out;
 }
@@ -226,6 +251,9 @@ constinit const KeyTable kVariedStartKeys = {
 constinit const KeyTable kVariedModelKeys = {.id = "varied_model",
                                              .doc = "What a seed draws of the control model.",
                                              .keys = kVariedModelRows};
+constinit const KeyTable kVariedActuatorsKeys = {.id = "varied_actuators",
+                                                 .doc = "What a seed draws of the actuators.",
+                                                 .keys = kVariedActuatorsRows};
 constinit const KeyTable kVariedPushKeys = {
     .id = "varied_push", .doc = "A push that a seed draws.", .keys = kVariedPushRows};
 constinit const KeyTable kVariationKeys = {.id = "variation",

@@ -58,19 +58,24 @@ struct Variation {
   std::map<std::string, Spread> com;  // m, x and y of a link's CoM in the control model
   std::vector<NamedLink> links;       // those of `com`, as named
   Spread command_delay;               // s, added to the world's
+  Spread spring;                      // relative change of each actuator's spring
+  Spread coulomb;                     // N m, of each actuator, in the place of the world's
+  NamedLink actuators;                // where these two stand
   PushSpread push;
 
   // The least friction that can be drawn; nullopt: it is not drawn.
   std::optional<double> least_friction() const;
   // The most command delay that can be added, s; 0: it is not drawn.
   double most_command_delay() const;
+  bool draws_actuators() const;  // springs or friction
   // Whether two seeds can draw different values.
   bool depends_on_seed() const;
 };
 
 // `variation:` of a world or a scenario.
 extern const core::KeyTable kVariationKeys;
-extern const core::KeyTable kSpreadKeys, kVariedStartKeys, kVariedModelKeys, kVariedPushKeys;
+extern const core::KeyTable kSpreadKeys, kVariedStartKeys, kVariedModelKeys, kVariedPushKeys,
+    kVariedActuatorsKeys;
 
 // Reads the map over `base`: what it names is replaced, `off` takes a draw away; `off` as a whole
 // takes all away.
@@ -98,6 +103,8 @@ struct Draw {
   std::map<std::string, double> masses;              // factor, by link
   std::map<std::string, std::array<double, 2>> com;  // m, by link
   std::optional<double> command_delay;               // s, added
+  std::vector<double> springs;                       // factor, by joint
+  std::vector<double> coulomb;                       // N m, by joint
   std::optional<DrawnPush> push;
   // What was drawn, by name with its unit (`start.velocity_mps`), for summaries and logs.
   std::vector<std::pair<std::string, std::vector<double>>> values;

@@ -38,7 +38,9 @@ class WorldLoader {
     if (const YamlNode* node = root.find("ground")) read_ground(*node);
     refuse_two_frictions(root);
     if (const YamlNode* node = root.find("surface")) read_surface(*node);
-    if (const YamlNode* node = root.find("actuators")) read_actuators(*node);
+    if (const YamlNode* node = root.find("actuators")) {
+      read_actuators(*node, world_.actuators, diagnostics_);
+    }
     if (const YamlNode* node = root.find("sensors")) read_sensors(*node);
     if (const YamlNode* node = root.find("control_model")) read_control_model(*node);
     if (const YamlNode* node = root.find("constraints")) read_constraints(*node);
@@ -142,23 +144,6 @@ class WorldLoader {
       }
       world_.surface.ramps.push_back(ramp);
     }
-  }
-
-  void read_actuators(const YamlNode& node) {
-    ActuatorSettings& actuators = world_.actuators;
-    actuators.mark = node.mark;
-    if (!core::expect_map(node, "{model: ideal}", diagnostics_)) return;
-    core::check_keys(node, kActuatorsKeys, diagnostics_);
-    if (const YamlNode* model = node.find("model")) {
-      actuators.mark = model->mark;
-      const auto choice =
-          core::read_choice(*model, kActuatorModels, diagnostics_, "an actuator model");
-      if (choice) actuators.model = static_cast<ActuatorModel>(*choice);
-    }
-    constexpr double kLongestDelay = 0.02;  // s; the checks of gains take the delay in ticks
-    read_bounded(node, "command_delay", core::kTime, 0.0, kLongestDelay, actuators.command_delay);
-    read_bounded(node, "coulomb", core::kTorque, 0.0, kInfinity, actuators.coulomb);
-    if (const YamlNode* coulomb = node.find("coulomb")) actuators.coulomb_mark = coulomb->mark;
   }
 
   void read_sensors(const YamlNode& node) {
@@ -328,10 +313,13 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
     diagnostics.error(mark, "unsupported",
                       fmt::format("the simulator does not support {} yet", what));
   };
-  if (world.actuators.model == ActuatorModel::series_elastic) {
-    refuse(world.actuators.mark, "series-elastic actuators (use 'model: ideal')");
+  for (const ActuatorSettings::Key& key : world.actuators.elastic_keys) {
+    if (world.actuators.model == ActuatorModel::series_elastic) break;
+    diagnostics.error(key.mark, "unsupported",
+                      fmt::format("'{}' has no effect on ideal actuators: expected 'model: "
+                                  "series_elastic' beside it",
+                                  key.name));
   }
-  if (world.actuators.coulomb > 0.0) refuse(world.actuators.coulomb_mark, "joint friction");
   for (const auto& [name, mark] : world.sensors.marks) {
     refuse(mark, fmt::format("sensor imperfections ('{}')", name));
   }
@@ -356,6 +344,8 @@ WorldDescription with_draw(WorldDescription world, const model::Draw& drawn) {
     }
   }
   world.actuators.command_delay += drawn.command_delay.value_or(0.0);
+  world.actuators.drawn_springs = drawn.springs;
+  world.actuators.drawn_coulomb = drawn.coulomb;
   return world;
 }
 

@@ -11,6 +11,7 @@
 #include "model/control_model.h"
 #include "model/height_surface.h"
 #include "model/variation/variation.h"
+#include "sim/world/actuators.h"
 
 namespace footfall::sim {
 
@@ -19,16 +20,6 @@ struct TerrainBox {
   std::array<double, 2> at{};    // m, centre in the world's x y
   std::array<double, 3> size{};  // m, full length, width, height above the plane
   core::Mark mark;
-};
-
-enum class ActuatorModel { ideal, series_elastic };
-
-struct ActuatorSettings {
-  ActuatorModel model = ActuatorModel::ideal;
-  double command_delay = 0.0;  // s, from the tick's write to the torque
-  double coulomb = 0.0;        // N m, friction of every joint
-  core::Mark mark;             // position of the section in the file; likewise below
-  core::Mark coulomb_mark;
 };
 
 // Sensor imperfections; 0 is perfect. `marks` has the position of every key that was written, by

@@ -63,8 +63,26 @@ constexpr WordSpec kActuatorModelRows[] = {
 
 constexpr KeySpec kActuatorsRows[] = {
     key("model", choice(kActuatorModelRows), "actuator model").otherwise("ideal"),
-    key("command_delay", quantity(kTime), "delay between command and motor").otherwise("0 s"),
-    key("coulomb", quantity(kTorque), "Coulomb friction in the joint").otherwise("0 Nm"),
+    key("command_delay", quantity(kTime), "from the tick's command to the motor").otherwise("0 s"),
+    key("measurement_delay", quantity(kTime),
+        "series_elastic: from the drives' measurement to the tick")
+        .otherwise("0 s"),
+    key("viscous", quantity(kAngularMomentum, "a damping"),
+        "series_elastic: viscous friction of every rotor, seen from the joint")
+        .otherwise("0 Nm s/rad"),
+    key("coulomb", quantity(kTorque),
+        "series_elastic: Coulomb friction of every rotor, seen from the joint")
+        .otherwise("0 Nm"),
+    key("motor_resolution", quantity(kNone, "an angle"),
+        "series_elastic: of the motors' encoders, seen from the joint")
+        .otherwise("0 rad"),
+    key("deflection_resolution", quantity(kNone, "an angle"),
+        "series_elastic: of the springs' encoders, from which the torque is measured")
+        .otherwise("0 rad"),
+    key("spring", by_axis(quantity(kNone, "a change such as \"+3 %\"")),
+        "series_elastic: relative change of the true springs, for all joints or by joint; the "
+        "drives count on those of the robot's file")
+        .otherwise("0 %"),
 };
 
 constexpr KeySpec kWorldSensorsRows[] = {

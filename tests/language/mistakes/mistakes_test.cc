@@ -18,6 +18,7 @@
 #include "sim/world/description.h"
 #include "tests/language/mistakes/cases.h"
 #include "tests/language/mistakes/source_ids.h"
+#include "tests/support/hume.h"
 
 namespace footfall::tests {
 namespace {
@@ -78,7 +79,9 @@ void load(const std::string& path, const std::string& text,
     model::load_robot(path, diagnostics);
   } else if (text.starts_with("world: 1\n")) {
     const auto world = sim::load_world(path, diagnostics);
-    if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
+    if (diagnostics.has_errors()) return;
+    sim::check_supported(world, diagnostics);
+    sim::check_actuators(world.actuators, load_hume(), world.physics.steps_per_tick, diagnostics);
   } else if (text.starts_with("scenario: 1\n")) {
     load_scenario(path, diagnostics);
   } else {

@@ -116,9 +116,6 @@ TEST_F(WorldDescriptionTest, WhatTheSimulatorCannotDoIsRefusedAtItsPlace) {
   check_supported(world, diagnostics_);
   EXPECT_EQ(
       problems(),
-      "6:20: error: the simulator does not support series-elastic actuators (use 'model: ideal') "
-      "yet\n"
-      "6:68: error: the simulator does not support joint friction yet\n"
       "8:23: error: the simulator does not support sensor imperfections ('joint.resolution') yet\n"
       "9:17: error: the simulator does not support sensor imperfections ('gyro.noise') yet\n"
       "9:35: error: the simulator does not support sensor imperfections ('gyro.bias') yet\n"
@@ -140,6 +137,17 @@ TEST_F(WorldDescriptionTest, ADelayAndAWrongControlModelAreSupported) {
   EXPECT_EQ(world.name, "lab");  // the file's own
   EXPECT_DOUBLE_EQ(world.control_model.mass_scale, 0.9);
   EXPECT_DOUBLE_EQ(world.actuators.command_delay, 2e-3);
+}
+
+TEST_F(WorldDescriptionTest, ImperfectionsOfSpringsNeedSpringsInTheActuators) {
+  const WorldDescription world =
+      load("world: 1\nactuators: {command_delay: 1 ms, coulomb: 1 Nm, spring: 3 %}\n");
+  check_supported(world, diagnostics_);
+  EXPECT_EQ(problems(),
+            "2:43: error: 'coulomb' has no effect on ideal actuators: expected 'model: "
+            "series_elastic' beside it\n"
+            "2:57: error: 'spring' has no effect on ideal actuators: expected 'model: "
+            "series_elastic' beside it\n");
 }
 
 TEST_F(WorldDescriptionTest, MistakesAreErrorsAtTheirPlace) {

@@ -1,0 +1,169 @@
+// Reading, checking and building of drives; see actuators.h.
+#include "sim/world/actuators.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/yaml/glob.h"
+#include "core/yaml/value_reader.h"
+#include "sim/world/keys.h"
+
+namespace footfall::sim {
+namespace {
+
+using core::Diagnostics;
+using core::YamlNode;
+
+constexpr double kLongestDelay = 0.02;  // s; the checks of gains take the delay in ticks
+constexpr std::array<double, 2> kSpringChange = {-0.9, 9.0};
+
+std::optional<double> read_change(const YamlNode& node, Diagnostics& diagnostics) {
+  return core::read_bounded(node, core::kNone, kSpringChange[0], kSpringChange[1], diagnostics,
+                            "a change such as \"+3 %\"");
+}
+
+// Positions in a file that these diagnostics may not know yet.
+void move_to(YamlNode& node, int file) {
+  node.mark.file = file;
+  for (core::YamlEntry& entry : node.entries) {
+    entry.key_mark.file = file;
+    move_to(entry.value, file);
+  }
+}
+
+// Factors of the springs, by joint: the world's times what was drawn.
+std::vector<double> spring_factors(const ActuatorSettings& actuators,
+                                   const model::RobotDescription& robot, Diagnostics& diagnostics) {
+  std::vector<double> factors(robot.joints.size(), 1.0);
+  YamlNode spring = actuators.spring;
+  move_to(spring, diagnostics.add_file(actuators.file));
+  if (spring.is_scalar() && !spring.scalar.empty()) {
+    factors.assign(factors.size(), 1.0 + read_change(spring, diagnostics).value_or(0.0));
+  } else if (spring.is_map()) {
+    std::vector<std::string> names;
+    for (const model::JointDescription& joint : robot.joints) names.push_back(joint.name);
+    const auto entries = core::match_names(spring, names, "joint", diagnostics);
+    for (std::size_t j = 0; j < entries.size(); ++j) {
+      if (entries[j] == nullptr) continue;
+      factors[j] = 1.0 + read_change(entries[j]->value, diagnostics).value_or(0.0);
+    }
+  }
+  for (std::size_t j = 0; j < factors.size() && j < actuators.drawn_springs.size(); ++j) {
+    factors[j] *= actuators.drawn_springs[j];
+  }
+  return factors;
+}
+
+// Steps of the torque loops in a plant's step; 0 if they are no whole number.
+int steps_of(const model::RobotDescription& robot, int plant_steps) {
+  const double plant_rate = robot.rate_hz() * plant_steps;
+  const double steps = robot.drives.rate / plant_rate;
+  const double whole = std::round(steps);
+  return whole >= 1.0 && std::abs(steps - whole) < 1e-6 * whole ? static_cast<int>(whole) : 0;
+}
+
+}  // namespace
+
+void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnostics& diagnostics) {
+  actuators.mark = node.mark;
+  actuators.file = diagnostics.file(node.mark.file);
+  if (!core::expect_map(node, "{model: ideal}", diagnostics)) return;
+  core::check_keys(node, kActuatorsKeys, diagnostics);
+  if (const YamlNode* model = node.find("model")) {
+    actuators.mark = model->mark;
+    const auto choice = core::read_choice(*model, kActuatorModels, diagnostics, "an actuator model");
+    if (choice) actuators.model = static_cast<ActuatorModel>(*choice);
+  }
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const auto read = [&](const char* key, core::Dimension dimension, double most, double& out,
+                        std::string_view what = {}) {
+    const YamlNode* const value = node.find(key);
+    if (value == nullptr) return;
+    out = core::read_bounded(*value, dimension, 0.0, most, diagnostics, what).value_or(out);
+    if (&out != &actuators.command_delay) actuators.elastic_keys.push_back({key, value->mark});
+  };
+  read("command_delay", core::kTime, kLongestDelay, actuators.command_delay);
+  read("measurement_delay", core::kTime, kLongestDelay, actuators.measurement_delay);
+  read("viscous", core::kAngularMomentum, kAny, actuators.viscous, "a damping");
+  read("coulomb", core::kTorque, kAny, actuators.coulomb);
+  read("motor_resolution", core::kNone, 1.0, actuators.motor_resolution, "an angle");
+  read("deflection_resolution", core::kNone, 1.0, actuators.deflection_resolution, "an angle");
+  if (const YamlNode* spring = node.find("spring")) {
+    actuators.spring = *spring;
+    actuators.elastic_keys.push_back({"spring", spring->mark});
+    if (spring->is_scalar()) {
+      read_change(*spring, diagnostics);
+    } else if (core::expect_map(*spring, "a change such as \"+3 %\", or one by joint",
+                                diagnostics)) {
+      for (const core::YamlEntry& entry : spring->entries) read_change(entry.value, diagnostics);
+    }
+  }
+}
+
+void check_actuators(const ActuatorSettings& actuators, const model::RobotDescription& robot,
+                     int steps_per_tick, Diagnostics& diagnostics) {
+  if (actuators.model == ActuatorModel::ideal) return;
+  core::Mark mark = actuators.mark;
+  mark.file = diagnostics.add_file(actuators.file);
+  for (const model::JointDescription& joint : robot.joints) {
+    if (joint.spring > 0.0 && joint.rotor > 0.0) continue;
+    diagnostics.error(mark, "actuators",
+                      fmt::format("series-elastic actuators need 'sea: {{spring: ..., rotor: ...}}' "
+                                  "of every joint: robot '{}' has none at '{}'",
+                                  robot.name, joint.name));
+    return;
+  }
+  if (robot.drives.torque_loop.empty()) {
+    diagnostics.error(mark, "actuators",
+                      fmt::format("series-elastic actuators need gains of their torque loops: robot "
+                                  "'{}' has no 'drives: {{torque_loop: ...}}'",
+                                  robot.name));
+  }
+  if (steps_of(robot, steps_per_tick) == 0) {
+    diagnostics.error(
+        mark, "actuators",
+        fmt::format("the torque loops run at {:g} Hz ('drives: {{rate: ...}}' of robot '{}'), the "
+                    "physics at {:g} Hz: expected a whole multiple",
+                    robot.drives.rate, robot.name, robot.rate_hz() * steps_per_tick));
+  }
+  spring_factors(actuators, robot, diagnostics);
+}
+
+hal::DriveSettings drive_settings(const ActuatorSettings& actuators,
+                                  const model::RobotDescription& robot, int plant_steps) {
+  Diagnostics problems;
+  check_actuators(actuators, robot, plant_steps, problems);
+  if (problems.has_errors()) throw std::runtime_error(problems.all().front().text);
+  const std::vector<double> factors = spring_factors(actuators, robot, problems);
+  hal::DriveSettings settings;
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const model::JointDescription& joint = robot.joints[j];
+    const double coulomb =
+        j < actuators.drawn_coulomb.size() ? actuators.drawn_coulomb[j] : actuators.coulomb;
+    settings.joints.push_back({{.spring = joint.spring * factors[j],
+                                .rotor = joint.rotor,
+                                .viscous = actuators.viscous,
+                                .coulomb = coulomb,
+                                .torque = joint.motor_torque,
+                                .speed = joint.motor_speed},
+                               joint.spring,
+                               robot.drives.torque_loop[j]});
+  }
+  settings.steps = steps_of(robot, plant_steps);
+  settings.step = 1.0 / robot.drives.rate;
+  const auto steps = [&](double delay) {
+    return static_cast<int>(std::lround(delay / settings.step));
+  };
+  settings.command_delay = steps(actuators.command_delay);
+  settings.measurement_delay = steps(actuators.measurement_delay);
+  settings.motor_resolution = actuators.motor_resolution;
+  settings.deflection_resolution = actuators.deflection_resolution;
+  settings.rate_cutoff = robot.drives.velocity_filter;
+  return settings;
+}
+
+}  // namespace footfall::sim
