@@ -1,6 +1,7 @@
 // The robot as the tick sees it: sensors, commands, and the interface of every backend.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "core/capacities.h"
@@ -24,6 +25,9 @@ class Hardware {
   virtual void safe_stop() noexcept = 0;
   // Whether its actuators have a torque loop whose gains a behavior's `torque_loop:` can set.
   virtual bool uses_torque_loop() const { return false; }
+  // Contacts that the control law relies on or loads from now on: bit c of contact c. Only a stand
+  // without a ground needs to know.
+  virtual void set_support(std::uint64_t contacts) noexcept { (void)contacts; }
   // Gains of a joint's torque loop from the next write() on; the motor's torque stays continuous.
   virtual void set_torque_loop(int joint, const TorqueLoopGains& gains) noexcept {
     (void)joint;

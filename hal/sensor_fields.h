@@ -39,8 +39,8 @@ struct Sensors {
   std::array<double, 3> v_WB{};            // velocity of the base origin, m/s, world
   std::array<double, 3> w_WB_B{};          // angular velocity, rad/s, base frame
 
-  bool body_contact = false;   // a body other than a declared contact touches (simulator)
-  bool backend_fault = false;  // the backend raised a warning or reset itself (simulator)
+  bool body_contact = false;     // a body other than a declared contact touches (simulator)
+  bool backend_fault = false;    // the backend raised a warning or reset itself (simulator)
   bool motor_saturated = false;  // a motor gave less than its torque loop asked for
 };
 

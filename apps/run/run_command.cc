@@ -8,6 +8,7 @@
 #include "apps/run/run_options.h"
 #include "apps/run/run_reload.h"
 #include "apps/run/run_setup.h"
+#include "apps/run/stub_setup.h"
 #include "apps/shared/commands.h"
 #include "apps/shared/output_option.h"
 #include "core/text/json_text.h"
@@ -162,7 +163,7 @@ int run_behavior(RunOptions options) {
         "--no-report");
   }
   require_film_name(options.film);
-  const sim::WorldDescription declared = declared_world(options, load_world(options.world));
+  sim::WorldDescription declared = declared_world(options, load_world(options.world));
   const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
@@ -171,6 +172,10 @@ int run_behavior(RunOptions options) {
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
   check_duration(options, behavior->robot);
+  const bool world_given = std::ranges::find(options.given, "--world") != options.given.end();
+  if (options.backend == "stub" && !world_given) {
+    declared = stand_world(std::move(declared), behavior->robot);
+  }
   check_world_fits(declared, behavior->robot);
   model::Draw drawn;
   const sim::WorldDescription world = draw_world(options, *behavior, declared, drawn);

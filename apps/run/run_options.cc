@@ -15,7 +15,9 @@ void add_run_options(CLI::App& command, RunOptions& o) {
                   "Behavior file, or the name of one in behaviors/library; or a scenario file")
       ->required();
   command.add_option("--robot", o.robot, "Robot file or name, instead of the behavior's");
-  command.add_option("--backend", o.backend, "mujoco (physics) or stub (double integrators)")
+  command
+      .add_option("--backend", o.backend,
+                  "mujoco (physics) or stub (a stand: actuators without physics)")
       ->check(one_of({"mujoco", "stub"}))
       ->capture_default_str();
   command.add_option("--world", o.world, "World file, or the name of one in sim/worlds")

@@ -9,6 +9,7 @@
 
 #include "apps/log/report_command.h"
 #include "apps/run/run_setup.h"
+#include "apps/run/stub_setup.h"
 #include "apps/shared/commands.h"
 #include "behaviors/check/physics/check.h"
 #include "core/text/json_text.h"
@@ -50,6 +51,9 @@ CheckedScenario load_checked(const RunOptions& options) {
                                            lab::place_in_file(scenario, scenario.world_mark));
   world.variation = lab::variation_over(scenario, world.variation);
   world = declared_world(options, std::move(world));
+  if (options.backend == "stub" && scenario.world_mark.line == 0) {
+    world = stand_world(std::move(world), scenario.behavior->robot);
+  }
   check_world_fits(world, scenario.behavior->robot);
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/run/stub_setup.h"
 #include "apps/shared/commands.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/realtime/allocation_count.h"
@@ -67,11 +68,19 @@ void check_world_fits(const sim::WorldDescription& world, const model::RobotDesc
 
 sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
                                  const sim::WorldDescription& world, model::Draw& drawn) {
-  if (options.backend != "mujoco") return world;
-  const std::vector<std::string> links = world.variation.mass.kind == model::Spread::Kind::none
+  const model::Variation& declared = world.variation;
+  model::Variation variation = declared;
+  if (options.backend == "stub") {  // what a stand has
+    variation = {};
+    variation.joints = declared.joints;
+    variation.command_delay = declared.command_delay;
+    variation.spring = declared.spring;
+    variation.coulomb = declared.coulomb;
+  }
+  const std::vector<std::string> links = variation.mass.kind == model::Spread::Kind::none
                                              ? std::vector<std::string>()
                                              : model::body_names(behavior.robot.model_path);
-  drawn = model::draw(world.variation, behavior.robot.joint_count(), links, options.seed);
+  drawn = model::draw(variation, behavior.robot.joint_count(), links, options.seed);
   model::keep_start_within_limits(drawn, behavior.robot);
   model::round_command_delay(drawn, world.actuators.command_delay,
                              behavior.robot.period_s() / world.physics.steps_per_tick);
@@ -131,13 +140,8 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
                      const sim::WorldDescription& world) {
   Backend backend;
   if (options.backend == "stub") {
-    hal::StubSettings settings;
-    settings.joints = behavior.robot.joint_count();
-    settings.contacts = static_cast<int>(behavior.robot.contacts.size());
-    settings.period = behavior.robot.period_s();
-    settings.base = {0.0, 0.0, behavior.robot.standing_height};
-    for (const auto& joint : behavior.robot.joints) settings.start.push_back(joint.posture);
-    backend.hardware = std::make_unique<hal::StubBackend>(settings);
+    backend.hardware = std::make_unique<hal::StubBackend>(stub_settings(behavior.robot, world));
+    backend.physics = stub_facts(world);
     return backend;
   }
   auto mujoco = std::make_unique<sim::MujocoBackend>(behavior.robot, world);

@@ -37,8 +37,8 @@ sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescri
 // Refuses a world that does not fit the robot: prints why and throws InputError.
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot);
 // The world as this run's seed draws it, and the push that it draws into `spec`, which the backend
-// must then bring. The stub has nothing to draw. Throws InputError if a joint could begin beyond
-// its limits.
+// must then bring. On the stub only what a stand has is drawn. Throws InputError if a joint could
+// begin beyond its limits.
 sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Behavior& behavior,
                                  const sim::WorldDescription& world, model::Draw& drawn);
 void schedule_push(const model::Draw& drawn, const Backend& backend,

@@ -201,7 +201,7 @@ behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world) {
 }
 
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
-                    core::Diagnostics& diagnostics) {
+                      core::Diagnostics& diagnostics) {
   sim::check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
   if (world.links.empty() && world.variation.links.empty()) return;  // spares reading the model
   try {

@@ -99,7 +99,7 @@ behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world);
 
 // Reports what the world needs and the robot lacks: links that it names, actuators.
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
-                    core::Diagnostics& diagnostics);
+                      core::Diagnostics& diagnostics);
 
 // Prints every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is
 // set).

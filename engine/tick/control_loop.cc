@@ -24,7 +24,8 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       safety_(behavior.robot),
       faults_(behavior),
       writer_(behavior, signals_),
-      outside_(behavior, settings) {
+      outside_(behavior, settings),
+      link_(behavior, hardware) {
   machine_->set_surface(settings.surface);
 }
 
@@ -77,6 +78,7 @@ void ControlLoop::compute() noexcept {
 }
 
 void ControlLoop::actuate() noexcept {
+  link_.tell(*machine_);
   hardware_.write(commands_);
   ++tick_;
 }

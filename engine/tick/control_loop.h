@@ -12,6 +12,7 @@
 #include "engine/edits/door.h"
 #include "engine/estimators/catalogue.h"
 #include "engine/tick/faults.h"
+#include "engine/tick/hardware_link.h"
 #include "engine/tick/outside.h"
 #include "engine/tick/rank_watch.h"
 #include "engine/tick/safety.h"
@@ -123,6 +124,7 @@ class ControlLoop {
   FaultMonitor faults_;
   SignalWriter writer_;
   Outside outside_;
+  HardwareLink link_;
   hal::Sensors sensors_;
   hal::Commands commands_;
   model::State estimate_;

@@ -22,6 +22,7 @@ class SensorFaults final : public Hardware {
   void write(const Commands& commands) noexcept override { real_.write(commands); }
   void safe_stop() noexcept override { real_.safe_stop(); }
   bool uses_torque_loop() const override { return real_.uses_torque_loop(); }
+  void set_support(std::uint64_t contacts) noexcept override { real_.set_support(contacts); }
   void set_torque_loop(int joint, const TorqueLoopGains& gains) noexcept override {
     real_.set_torque_loop(joint, gains);
   }

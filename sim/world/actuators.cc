@@ -75,7 +75,8 @@ void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnosti
   core::check_keys(node, kActuatorsKeys, diagnostics);
   if (const YamlNode* model = node.find("model")) {
     actuators.mark = model->mark;
-    const auto choice = core::read_choice(*model, kActuatorModels, diagnostics, "an actuator model");
+    const auto choice =
+        core::read_choice(*model, kActuatorModels, diagnostics, "an actuator model");
     if (choice) actuators.model = static_cast<ActuatorModel>(*choice);
   }
   constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -111,17 +112,19 @@ void check_actuators(const ActuatorSettings& actuators, const model::RobotDescri
   mark.file = diagnostics.add_file(actuators.file);
   for (const model::JointDescription& joint : robot.joints) {
     if (joint.spring > 0.0 && joint.rotor > 0.0) continue;
-    diagnostics.error(mark, "actuators",
-                      fmt::format("series-elastic actuators need 'sea: {{spring: ..., rotor: ...}}' "
-                                  "of every joint: robot '{}' has none at '{}'",
-                                  robot.name, joint.name));
+    diagnostics.error(
+        mark, "actuators",
+        fmt::format("series-elastic actuators need 'sea: {{spring: ..., rotor: ...}}' "
+                    "of every joint: robot '{}' has none at '{}'",
+                    robot.name, joint.name));
     return;
   }
   if (robot.drives.torque_loop.empty()) {
-    diagnostics.error(mark, "actuators",
-                      fmt::format("series-elastic actuators need gains of their torque loops: robot "
-                                  "'{}' has no 'drives: {{torque_loop: ...}}'",
-                                  robot.name));
+    diagnostics.error(
+        mark, "actuators",
+        fmt::format("series-elastic actuators need gains of their torque loops: robot "
+                    "'{}' has no 'drives: {{torque_loop: ...}}'",
+                    robot.name));
   }
   if (steps_of(robot, steps_per_tick) == 0) {
     diagnostics.error(

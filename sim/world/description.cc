@@ -45,6 +45,7 @@ class WorldLoader {
     if (const YamlNode* node = root.find("control_model")) read_control_model(*node);
     if (const YamlNode* node = root.find("constraints")) read_constraints(*node);
     if (const YamlNode* node = root.find("physics")) read_physics(*node);
+    if (const YamlNode* node = root.find("stand")) read_stand(*node);
     return std::move(world_);
   }
 
@@ -240,6 +241,18 @@ class WorldLoader {
     if (const YamlNode* solref = node.find("solref")) read_solref(*solref);
     if (const YamlNode* solimp = node.find("solimp")) read_solimp(*solimp);
     read_bounded(node, "hands", core::kRate, 1.0, 200.0, physics.hands);
+  }
+
+  void read_stand(const YamlNode& node) {
+    if (!core::expect_map(node, "a map of what holds the joints", diagnostics_)) return;
+    core::check_keys(node, kStandKeys, diagnostics_);
+    StandSettings& stand = world_.stand;
+    constexpr double kLeast = 1e-6;
+    read_bounded(node, "inertia", core::kInertia, kLeast, kInfinity, stand.inertia);
+    read_bounded(node, "stiffness", core::kTorque, 0.0, kInfinity, stand.stiffness, "a stiffness");
+    read_bounded(node, "damping", core::kAngularMomentum, 0.0, kInfinity, stand.damping,
+                 "a damping");
+    read_bounded(node, "swing", core::kTime, 0.0, kInfinity, stand.swing);
   }
 
   void read_integer(const YamlNode& map, std::string_view key, int maximum, int& out) {

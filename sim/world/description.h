@@ -65,6 +65,15 @@ struct ConstraintName {
   core::Mark mark;
 };
 
+// What holds the robot where there is no physics (`--backend stub`): each joint is an inertia on a
+// spring to its start.
+struct StandSettings {
+  double inertia = 0.1;       // kg m^2, of every joint
+  double stiffness = 2000.0;  // N m/rad; with 100 N m a joint turns by 3 deg
+  double damping = 20.0;      // N m s/rad
+  double swing = 0.28;        // s, from a foot's release to its touchdown
+};
+
 // How a run begins beside the nominal posture at rest.
 struct StartOffsets {
   std::vector<double> joints;        // rad, by joint of the robot file; empty: 0
@@ -90,6 +99,7 @@ struct WorldDescription {
   model::Variation variation;     // what a seed draws
   StartOffsets start;             // what was drawn
   PhysicsSettings physics;
+  StandSettings stand;
 };
 
 // Search folders for `base: NAME`: sim/worlds in each folder of `search`.

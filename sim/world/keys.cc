@@ -28,6 +28,7 @@ constexpr KeySpec kWorldRows[] = {
         .otherwise("2 ms"),
     key("variation", map_of(model::kVariationKeys), "what a seed draws"),
     key("physics", map_of(kPhysicsKeys), "MuJoCo's settings"),
+    key("stand", map_of(kStandKeys), "what holds the robot where there is no physics"),
 };
 
 constexpr KeySpec kGroundRows[] = {
@@ -155,6 +156,18 @@ constexpr KeySpec kPhysicsRows[] = {
         .otherwise("50 rad/s"),
 };
 
+constexpr KeySpec kStandRows[] = {
+    key("inertia", quantity(kInertia), "of every joint").otherwise("0.1 kg m^2"),
+    key("stiffness", quantity(kTorque, "a stiffness"), "of every joint's spring; 0: free joints")
+        .otherwise("2000 Nm/rad"),
+    key("damping", quantity(kAngularMomentum, "a damping"), "beside the spring")
+        .otherwise("20 Nm s/rad"),
+    key("swing", quantity(kTime),
+        "from the tick in which the control law lets go of a foot to its touchdown; 0: feet never "
+        "leave")
+        .otherwise("280 ms"),
+};
+
 }  // namespace
 
 constinit const core::KeyTable kWorldKeys = {
@@ -187,6 +200,12 @@ constinit const core::KeyTable kControlModelKeys = {
     .keys = kControlModelRows};
 constinit const core::KeyTable kPhysicsKeys = {
     .id = "physics", .doc = "MuJoCo's settings.", .keys = kPhysicsRows};
+constinit const core::KeyTable kStandKeys = {
+    .id = "stand",
+    .doc =
+        "What holds the robot on the backend `stub`, which has no physics: each joint is an "
+        "inertia on a spring to its start.",
+    .keys = kStandRows};
 constinit const std::span<const core::WordSpec> kActuatorModels = kActuatorModelRows;
 constinit const std::span<const core::WordSpec> kIntegrators = kIntegratorRows;
 constinit const std::span<const core::WordSpec> kSolvers = kSolverRows;

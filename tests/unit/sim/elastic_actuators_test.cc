@@ -153,7 +153,8 @@ TEST_F(ElasticActuators, ATickAllocatesNothing) {
   EXPECT_EQ(guard.allocations(), 0);
 }
 
-std::string problems_with(const model::RobotDescription& robot, const sim::WorldDescription& world) {
+std::string problems_with(const model::RobotDescription& robot,
+                          const sim::WorldDescription& world) {
   core::Diagnostics diagnostics;
   sim::check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
   std::string text;

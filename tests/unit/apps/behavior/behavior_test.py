@@ -116,12 +116,12 @@ class Check(Case):
         self.refused(self.footfall("check", self.write("w.yaml", "world: 1\ngruond: {}\n")), 2, "gruond")
 
     def test_a_world_that_runs_refuse_is_right_all_the_same(self):
-        world = self.write("w.yaml", "world: 1\nactuators: {model: series_elastic}\n")
+        world = self.write("w.yaml", "world: 1\nactuators: {coulomb: 1 Nm}\n")
         result = self.footfall("check", world)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn(f"{world}:2:20: warning: ", result.stderr)
+        self.assertIn(f"{world}:2:22: warning: ", result.stderr)
         self.assertIn("runs refuse this world", result.stderr)
-        self.refused(self.run_it("balance", "--world", world), 2, "series-elastic")
+        self.refused(self.run_it("balance", "--world", world), 2, "no effect on ideal actuators")
 
     def test_a_scenario(self):
         text = "scenario: 1\nbehavior: balance\nworld: {}\nfor: 10 s\nexpect: [steps >= 10]\n"

@@ -16,13 +16,14 @@ namespace {
 TEST(InputLayout, ColumnsKeepTheirNamesAndOrder) {
   const InputLayout layout({"hip", "knee"}, {"foot"});
   const std::vector<std::string> names = {
-      "command.hip",     "command.knee", "time_ns",      "flags",           "qd.hip",
-      "qd.knee",         "q.hip",        "q.knee",       "tau.hip",         "tau.knee",
-      "gyro.x",          "gyro.y",       "gyro.z",       "accelerometer.x", "accelerometer.y",
-      "accelerometer.z", "force.foot.x", "force.foot.y", "force.foot.z",    "v_WB.x",
-      "v_WB.y",          "v_WB.z",       "p_WB.x",       "p_WB.y",          "p_WB.z",
-      "q_WB.w",          "q_WB.x",       "q_WB.y",       "q_WB.z",          "w_WB_B.x",
-      "w_WB_B.y",        "w_WB_B.z"};
+      "command.hip",      "command.knee", "time_ns",      "flags",           "qd.hip",
+      "qd.knee",          "q.hip",        "q.knee",       "tau.hip",         "tau.knee",
+      "gyro.x",           "gyro.y",       "gyro.z",       "accelerometer.x", "accelerometer.y",
+      "accelerometer.z",  "force.foot.x", "force.foot.y", "force.foot.z",    "v_WB.x",
+      "v_WB.y",           "v_WB.z",       "p_WB.x",       "p_WB.y",          "p_WB.z",
+      "q_WB.w",           "q_WB.x",       "q_WB.y",       "q_WB.z",          "w_WB_B.x",
+      "w_WB_B.y",         "w_WB_B.z",     "motor.hip",    "motor.knee",      "motor_torque.hip",
+      "motor_torque.knee"};
   EXPECT_EQ(layout.names(), names);
 }
 
