@@ -6,8 +6,8 @@
 
 #include "core/capacities.h"
 #include "core/fault.h"
-#include "hal/actuators/torque_loop.h"
 #include "hal/sensor_fields.h"
+#include "hal/torque_loop_gains.h"
 
 namespace footfall::hal {
 

@@ -50,4 +50,15 @@ tasks::ControllerSizes controller_sizes(const Behavior& behavior) {
   return sizes;
 }
 
+bool law_holds(const Behavior& behavior, int control, int contact) noexcept {
+  const auto contains = [contact](const std::vector<int>& list) {
+    return std::find(list.begin(), list.end(), contact) != list.end();
+  };
+  const ControlSpec& spec = behavior.controls[at(control)];
+  if (contains(spec.contacts)) return true;
+  if (spec.transition < 0) return false;
+  const TransitionSpec& transition = behavior.contact_transitions[at(spec.transition)];
+  return transition.loads && contains(transition.contacts);
+}
+
 }  // namespace footfall::behaviors

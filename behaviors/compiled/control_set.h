@@ -14,4 +14,7 @@ void fill_control_set(const Behavior& behavior, const ControlSpec& spec, tasks::
 // Capacities that a behavior needs at worst, for a whole-body controller.
 tasks::ControllerSizes controller_sizes(const Behavior& behavior);
 
+// Whether a law (index into Behavior::controls) relies on the contact, or is loading it.
+bool law_holds(const Behavior& behavior, int control, int contact) noexcept;
+
 }  // namespace footfall::behaviors

@@ -1,27 +1,10 @@
 // Phases of the feet; see swing_watch.h.
 #include "engine/tick/swing_watch.h"
 
-#include <algorithm>
-
+#include "behaviors/compiled/control_set.h"
 #include "core/index.h"
 
 namespace footfall::engine {
-namespace {
-
-bool contains(const std::vector<int>& list, int value) noexcept {
-  return std::find(list.begin(), list.end(), value) != list.end();
-}
-
-}  // namespace
-
-bool law_holds(const behaviors::Behavior& behavior, int control, int contact) noexcept {
-  const behaviors::ControlSpec& spec = behavior.controls[at(control)];
-  if (contains(spec.contacts, contact)) return true;
-  if (spec.transition < 0) return false;
-  const behaviors::TransitionSpec& transition = behavior.contact_transitions[at(spec.transition)];
-  return transition.loads && contains(transition.contacts, contact);
-}
-
 FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool stepping) noexcept {
   FaultFindings findings;
   const behaviors::ControlSpec& spec = behavior_.controls[at(control)];
@@ -29,7 +12,7 @@ FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool s
   const double period = robot.period_s();
   for (int c = 0; c < static_cast<int>(robot.contacts.size()); ++c) {
     Phase& phase = phases_[at(c)];
-    const bool held = law_holds(behavior_, control, c);
+    const bool held = behaviors::law_holds(behavior_, control, c);
     if (!stepping || held || spec.contacts.empty()) {
       if (held && phase.ticks > 0 && !sensors.contact[at(c)]) {
         findings.add(core::Fault::load_air, {c, static_cast<double>(phase.ticks) * period, 0.0});

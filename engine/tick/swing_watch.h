@@ -13,9 +13,6 @@
 
 namespace footfall::engine {
 
-// Whether the law (index into Behavior::controls) relies on the contact, or is loading it.
-bool law_holds(const behaviors::Behavior& behavior, int control, int contact) noexcept;
-
 class SwingWatch {
  public:
   explicit SwingWatch(const behaviors::Behavior& behavior) : behavior_(behavior) {}

@@ -11,7 +11,7 @@
 #include "core/diagnostics/diagnostics.h"
 #include "core/fault.h"
 #include "core/yaml/yaml.h"
-#include "hal/actuators/torque_loop.h"
+#include "hal/torque_loop_gains.h"
 
 namespace footfall::model {
 

@@ -7,7 +7,7 @@
 
 #include "core/units/units.h"
 #include "core/yaml/key_table.h"
-#include "hal/actuators/torque_loop.h"
+#include "hal/torque_loop_gains.h"
 
 namespace footfall::model {
 

@@ -96,6 +96,23 @@ bool Variation::depends_on_seed() const {
          std::ranges::any_of(com, [&](const auto& link) { return varies(link.second); });
 }
 
+namespace {
+
+void draw_actuators(const Variation& v, int joints, std::uint64_t seed, Draw& out) {
+  if (is_drawn(v.spring)) {
+    Source source(seed, Stream::spring);
+    for (int j = 0; j < joints; ++j) out.springs.push_back(1.0 + source.of(v.spring));
+    out.values.emplace_back("actuators.spring", out.springs);
+  }
+  if (is_drawn(v.coulomb)) {
+    Source source(seed, Stream::coulomb);
+    for (int j = 0; j < joints; ++j) out.coulomb.push_back(source.of(v.coulomb));
+    out.values.emplace_back("actuators.coulomb_Nm", out.coulomb);
+  }
+}
+
+}  // namespace
+
 Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
           std::uint64_t seed) {
   Draw out;
@@ -141,16 +158,7 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
     out.command_delay = Source(seed, Stream::command_delay).of(v.command_delay);
     tell(kDelayName, {*out.command_delay});
   }
-  if (is_drawn(v.spring)) {
-    Source source(seed, Stream::spring);
-    for (int j = 0; j < joints; ++j) out.springs.push_back(1.0 + source.of(v.spring));
-    tell("actuators.spring", out.springs);
-  }
-  if (is_drawn(v.coulomb)) {
-    Source source(seed, Stream::coulomb);
-    for (int j = 0; j < joints; ++j) out.coulomb.push_back(source.of(v.coulomb));
-    tell("actuators.coulomb_Nm", out.coulomb);
-  }
+  draw_actuators(v, joints, seed, out);
   if (v.push.impulse > 0.0) {
     Source source(seed, Stream::push);
     DrawnPush push;

@@ -1,7 +1,7 @@
 // What the hardware is told of the law; see hardware_link.h.
-#include "engine/tick/hardware_link.h"
+#include "engine/links/hardware_link.h"
 
-#include "engine/tick/swing_watch.h"
+#include "behaviors/compiled/control_set.h"
 
 namespace footfall::engine {
 
@@ -10,7 +10,8 @@ void HardwareLink::tell(const behaviors::Machine& machine) noexcept {
   control_ = machine.control_spec();
   std::uint64_t support = 0;
   for (int c = 0; c < static_cast<int>(behavior_.robot.contacts.size()); ++c) {
-    if (law_holds(behavior_, control_, c)) support |= std::uint64_t{1} << static_cast<unsigned>(c);
+    if (behaviors::law_holds(behavior_, control_, c))
+      support |= std::uint64_t{1} << static_cast<unsigned>(c);
   }
   hardware_.set_support(support);
 }
