@@ -58,9 +58,10 @@ sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescri
   return world;
 }
 
-void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot) {
+void check_links_of(const sim::WorldDescription& world, const model::RobotDescription& robot,
+                    const std::vector<model::BodySprings>& holds) {
   core::Diagnostics diagnostics;
-  check_links_of(world, robot, diagnostics);
+  check_links_of(world, robot, diagnostics, holds);
   print_diagnostics(diagnostics);
   if (diagnostics.has_errors()) throw InputError("");
 }
@@ -145,10 +146,11 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
   backend.physics = fmt::format(
       "step 1/{:.0f} s, friction {:.3g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature "
       "{:g}, "
-      "constraints {}, mocap bodies {}, mass {:.2f} kg",
+      "equality constraints {}, mocap bodies {}, mass {:.2f} kg",
       1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max,
       f.armature_max, f.equalities, f.mocap_bodies, f.mass);
   backend.physics += more_physics(world);
+  for (const model::BodySprings& aid : world.constraints) backend.constraints.push_back(aid.name);
   backend.mujoco = mujoco.get();
   backend.hardware = std::move(mujoco);
   return backend;

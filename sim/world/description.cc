@@ -234,10 +234,9 @@ class WorldLoader {
   }
 
   void read_constraints(const YamlNode& node) {
-    if (!core::expect_sequence(node, "a list of names", diagnostics_)) return;
-    for (const YamlNode& item : node.items) {
-      const auto name = core::read_name(item, diagnostics_, "an external aid's name");
-      if (name) world_.constraints.push_back({*name, item.mark});
+    world_.constraints = model::read_constraints(node, diagnostics_);
+    for (const model::BodySprings& aid : world_.constraints) {
+      if (!aid.body.name.empty()) world_.links.push_back(aid.body);
     }
   }
 
@@ -334,9 +333,6 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
   if (world.actuators.coulomb > 0.0) refuse(world.actuators.coulomb_mark, "joint friction");
   for (const auto& [name, mark] : world.sensors.marks) {
     refuse(mark, fmt::format("sensor imperfections ('{}')", name));
-  }
-  for (const ConstraintName& constraint : world.constraints) {
-    refuse(constraint.mark, fmt::format("the external aid '{}'", constraint.name));
   }
 }
 

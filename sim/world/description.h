@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.h"
+#include "model/aids/springs.h"
 #include "model/control_model.h"
 #include "model/height_surface.h"
 #include "model/variation/variation.h"
@@ -68,12 +69,6 @@ struct PhysicsSettings {
   double hands = 50.0;
 };
 
-// A named external aid (a boom, a planarizer); absent unless the world names it.
-struct ConstraintName {
-  std::string name;
-  core::Mark mark;
-};
-
 // How a run begins beside the nominal posture at rest.
 struct StartOffsets {
   std::vector<double> joints;        // rad, by joint of the robot file; empty: 0
@@ -93,8 +88,8 @@ struct WorldDescription {
   ActuatorSettings actuators;
   SensorSettings sensors;
   model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
-  std::vector<model::NamedLink> links;  // of its `com`
-  std::vector<ConstraintName> constraints;
+  std::vector<model::NamedLink> links;  // of its `com` and its constraints
+  std::vector<model::BodySprings> constraints;
   double planner_latency = 2e-3;  // s, between planner request and plan, in lock-step
   model::Variation variation;     // what a seed draws
   StartOffsets start;             // what was drawn
