@@ -2,6 +2,7 @@
 #include "apps/run/run_setup.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -284,6 +285,9 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
   id.log = options.log + "/log.mcap";
   engine::LogHeader header = lab::make_log_header(behavior, log_source(options, world));
   header.run.emplace_back("variation", core::json_text(lab::variation_json(id)));
+  if (!id.constraints.empty()) {
+    header.run.emplace_back("constraints", fmt::format("{}", fmt::join(id.constraints, ", ")));
+  }
   return std::make_unique<engine::LogWriter>(id.log, behavior.signals, header);
 }
 

@@ -9,10 +9,12 @@ namespace {
 using namespace core;  // constructors of the tables
 
 constexpr std::string_view kDampingDoc =
-    "it opposes the axis' velocity; with `travel` only beyond it, and never so that a slack rope "
-    "pulls";
+    "it opposes the axis' velocity; with `travel` only beyond a bound, where the whole force never "
+    "points outwards";
 constexpr std::string_view kDampingDefault = "critical for the robot's mass or rotational inertia";
 constexpr std::string_view kHandsDefault = "the mass times the square of the world's `hands`";
+constexpr std::string_view kTurnHandsDefault =
+    "the rotational inertia times the square of the world's `hands`";
 constexpr std::string_view kTravelDoc =
     "free between these distances from the anchor, a one-sided spring beyond either";
 constexpr std::string_view kTurnDoc =
@@ -47,7 +49,7 @@ constexpr KeySpec kHeldLineRows[] = {
 
 constexpr KeySpec kHeldTurnRows[] = {
     key("stiffness", quantity(kTorque, "a stiffness in Nm/rad"), "of the spring")
-        .otherwise(kHandsDefault),
+        .otherwise(kTurnHandsDefault),
     key("damping", quantity(kAngularMomentum, "a damping in Nm s/rad"), kDampingDoc)
         .otherwise(kDampingDefault),
     key("travel", pair(quantity(kNone, "an angle")), kTurnDoc).otherwise(kNoTravel),
