@@ -11,6 +11,7 @@
 #include "core/diagnostics/diagnostics.h"
 #include "sim/mujoco_backend.h"
 #include "sim/springs_check.h"
+#include "tests/support/allocation_guard.h"
 #include "tests/support/hume.h"
 
 namespace footfall::sim {
@@ -282,6 +283,40 @@ TEST_F(Springs, TheDefaultAnchorIsWhereTheDrawnStartPutsTheBody) {
   backend_->start();
   ticks(1);
   for (int k = 0; k < 6; ++k) EXPECT_EQ(force(k), 0.0) << k;
+}
+
+// Without torque Hume folds up; the rope catches its torso 5 cm lower.
+TEST_F(Springs, AHarnessCatchesARobotWithoutTorque) {
+  robot_ = tests::load_hume();
+  aid("harness").axes[2] = spring(3000);
+  world_.constraints[0].body.name = "torso";
+  world_.constraints[0].axes[2]->travel = {-0.05, 1.0};
+  start();
+  const double before = position(2);
+  double least = before;
+  for (int n = 0; n < 7500; ++n) {
+    ticks(1);
+    least = std::min(least, position(2));
+    ASSERT_GE(force(2), 0.0) << n;
+    ASSERT_EQ(force(0), 0.0) << n;
+  }
+  EXPECT_LT(position(2), before - 0.05);
+  // At rest it hangs by m g/k = 6.5 cm at most. Critical damping stops it before twice that.
+  EXPECT_GT(least, before - 0.05 - 2.0 * 20.0 * kGravity / 3000);
+}
+
+TEST_F(Springs, AreAppliedWithoutAllocation) {
+  if (!tests::AllocationGuard::counts()) GTEST_SKIP() << "not under sanitizers";
+  for (auto& axis : aid().axes) axis = spring(2000);
+  world_.constraints[0].axes[2]->travel = {-0.05, 1.0};
+  start();
+  model::BodySprings hold;
+  hold.axes[5].emplace();
+  const tests::AllocationGuard guard;
+  const int number = backend_->hold(1, hold);
+  for (int n = 0; n < 100; ++n) backend_->write({});
+  backend_->release(number);
+  EXPECT_EQ(guard.allocations(), 0);
 }
 
 TEST_F(Springs, ABodyThatTheRobotLacksIsRefused) {
