@@ -70,6 +70,7 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
     }
     contact_of_geom_[at(geom)] = static_cast<int>(c);
   }
+  attach_constraints();
   const double step = model_->opt.timestep;
   const auto delay = static_cast<std::size_t>(std::llround(world.actuators.command_delay / step));
   delay_line_.assign(delay + 1, std::vector<double>(robot.joints.size(), 0.0));
@@ -107,6 +108,7 @@ void MujocoBackend::place_at_posture() {
 
 void MujocoBackend::start() {
   place_at_posture();
+  attach_constraints();
   for (auto& line : delay_line_) std::fill(line.begin(), line.end(), 0.0);
   delay_head_ = 0;
   if (drive_) {
@@ -121,6 +123,18 @@ void MujocoBackend::start() {
   warnings_at_start_ = warnings();
   // From here on an error inside MuJoCo must not unwind through the tick.
   core::set_mujoco_running(true, nullptr);
+}
+
+void MujocoBackend::attach_constraints() {
+  constraints_.clear();
+  for (const model::BodySprings& aid : world_.constraints) {
+    const int body = find_body(aid.body.name);
+    if (body <= 0) {  // check_links() says it at its place
+      throw std::runtime_error(world_.path + ": error: the constraint '" + aid.name +
+                               "' acts on a body that the robot lacks: '" + aid.body.name + "'");
+    }
+    constraints_.push_back(attach_springs(*model_, *data_, body, aid, world_.physics.hands));
+  }
 }
 
 std::int64_t MujocoBackend::warnings() const noexcept {

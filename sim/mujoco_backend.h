@@ -11,6 +11,7 @@
 #include "hal/actuators/drive.h"
 #include "hal/hardware.h"
 #include "model/robot/description.h"
+#include "sim/springs.h"
 #include "sim/world/description.h"
 #include "sim/world/push.h"
 
@@ -27,14 +28,7 @@ struct ActivePush {
 };
 inline constexpr std::size_t kMaxPushes = 32;  // maximum number of simultaneous pushes
 
-// A body held in place by a stiff, well damped spring at its centre of mass; the floating base is
-// held in orientation, too.
-struct HeldBody {
-  int body = 0;
-  std::array<double, 3> position{};     // m, world
-  std::array<double, 4> orientation{};  // w x y z
-};
-inline constexpr std::size_t kMaxHeld = 8;
+inline constexpr std::size_t kMaxHeld = 8;  // holds at a time
 
 // Properties of the compiled physics that all results depend on; printed in a run's summary.
 struct PhysicsFacts {
@@ -70,8 +64,10 @@ class MujocoBackend final : public hal::Hardware {
   // Starts a push on a body's CoM; direction in rad from the robot's heading, 0 forward, pi/2 left.
   // Names were checked by find_body(). False if kMaxPushes are active.
   bool push(int body, double force, double direction, double duration) noexcept;
-  // Holds a body in place, or releases it; false if too many are held.
-  bool hold(int body, bool on) noexcept;
+  // Holds a body by springs anchored where it is now; its number for release(), -1 if kMaxHeld are
+  // held.
+  int hold(int body, const model::BodySprings& springs) noexcept;
+  void release(int hold) noexcept;
   int find_body(const std::string& name) const;  // -1 if absent
   PhysicsFacts facts() const;
 
@@ -86,7 +82,8 @@ class MujocoBackend final : public hal::Hardware {
   void apply_commands(const hal::Commands& commands) noexcept;
   void advance_drive(const hal::Commands& commands) noexcept;
   void apply_forces() noexcept;
-  void apply_hold(const HeldBody& held) noexcept;
+  void update_positions() noexcept;
+  void attach_constraints();
   void sense_contacts(hal::Sensors& sensors) noexcept;
   std::int64_t warnings() const noexcept;
   void place_at_posture();
@@ -102,7 +99,8 @@ class MujocoBackend final : public hal::Hardware {
   std::optional<hal::SeriesElasticDrive> drive_;
   std::array<double, core::kMaxJoints> joint_angles_{}, joint_rates_{}, drive_torques_{};
   std::array<ActivePush, kMaxPushes> pushes_{};
-  std::array<HeldBody, kMaxHeld> held_{};
+  std::array<ActiveSprings, kMaxHeld> held_{};
+  std::vector<ActiveSprings> constraints_;  // of the world, anchored at the start
   std::int64_t warnings_at_start_ = 0;
   std::int64_t tick_ = 0;
   bool stopped_ = false;

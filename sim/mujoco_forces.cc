@@ -1,19 +1,30 @@
-// External forces on the robot: pushes and held bodies.
+// External forces on the robot: pushes, holds, and the aids of the world.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "sim/mujoco_backend.h"
 
 namespace footfall::sim {
+
+// MuJoCo's positions and velocities are those of the beginning of the last physics step. A force
+// that lags behind by a step h adds the damping -h k to a spring k, and an undamped one would gain
+// energy; so they are brought up to date. What mj_step computes does not depend on it.
+void MujocoBackend::update_positions() noexcept {
+  mj_kinematics(model_, data_);
+  mj_comPos(model_, data_);
+  mj_comVel(model_, data_);
+}
+
 void MujocoBackend::apply_forces() noexcept {
-  for (const ActivePush& p : pushes_) {
-    if (p.body != 0) std::fill_n(data_->xfrc_applied + 6 * p.body, 6, 0.0);
-  }
-  for (const HeldBody& h : held_) {
-    if (h.body != 0) std::fill_n(data_->xfrc_applied + 6 * h.body, 6, 0.0);
-  }
+  const auto clear = [this](int body) {
+    if (body != 0) std::fill_n(data_->xfrc_applied + 6 * body, 6, 0.0);
+  };
+  for (const ActivePush& p : pushes_) clear(p.body);
+  for (const ActiveSprings& h : held_) clear(h.body);
+  for (const ActiveSprings& c : constraints_) clear(c.body);
   // Pushes on one body add up. The last step of one that lasts no whole number of steps has a part
   // of the force, so that the impulse is force times duration.
   for (ActivePush& p : pushes_) {
@@ -24,50 +35,26 @@ void MujocoBackend::apply_forces() noexcept {
     p.steps_left -= 1.0;
     if (p.steps_left <= -1.0) p = {};  // one step later: its force was cleared above
   }
-  for (const HeldBody& h : held_) {
-    if (h.body != 0) apply_hold(h);
+  const auto needs_present = [](const ActiveSprings& s) { return s.body != 0 && s.present; };
+  if (!constraints_.empty() || std::ranges::any_of(held_, needs_present)) update_positions();
+  for (const ActiveSprings& h : held_) {
+    if (h.body != 0) apply_springs(*model_, *data_, h);
   }
+  for (const ActiveSprings& c : constraints_) apply_springs(*model_, *data_, c);
 }
 
-// f = m (w^2 (x_held - x) - 2 w v) at the centre of mass; at the root body, whose rotation carries
-// all the others, likewise with the rotational inertia that its free joint sees.
-void MujocoBackend::apply_hold(const HeldBody& held) noexcept {
-  const double w = world_.physics.hands;
-  const int root = model_->body_rootid[held.body];
-  const double mass = model_->body_subtreemass[root];
-  std::array<double, 6> velocity{};  // rotation, then translation of the CoM; world
-  mj_objectVelocity(model_, data_, mjOBJ_BODY, held.body, velocity.data(), 0);
-  double* force = data_->xfrc_applied + 6 * held.body;
-  const double* x = data_->xipos + 3 * held.body;
-  for (std::size_t k = 0; k < 3; ++k) {
-    force[k] += mass * (w * w * (held.position[k] - x[k]) - 2.0 * w * velocity[3 + k]);
-  }
-  if (held.body != root || model_->body_dofnum[root] != 6) return;
-  std::array<double, 4> back{}, turn{};
-  mju_negQuat(back.data(), data_->xquat + 4 * held.body);
-  mju_mulQuat(turn.data(), held.orientation.data(), back.data());
-  std::array<double, 3> angle{};
-  mju_quat2Vel(angle.data(), turn.data(), 1.0);
-  const int dof = model_->body_dofadr[root] + 3;
-  double inertia = 1e9;  // the smallest of the three: stable about all axes
-  for (int k = 0; k < 3; ++k) inertia = std::min(inertia, data_->qM[model_->dof_Madr[dof + k]]);
-  for (std::size_t k = 0; k < 3; ++k) {
-    force[3 + k] += inertia * (w * w * angle[k] - 2.0 * w * velocity[k]);
-  }
+int MujocoBackend::hold(int body, const model::BodySprings& springs) noexcept {
+  const auto slot = std::ranges::find(held_, 0, &ActiveSprings::body);
+  if (slot == held_.end()) return -1;
+  if (!springs.all) update_positions();
+  *slot = attach_springs(*model_, *data_, body, springs, world_.physics.hands);
+  return static_cast<int>(slot - held_.begin());
 }
 
-bool MujocoBackend::hold(int body, bool on) noexcept {
-  const auto wanted = std::ranges::find(held_, on ? 0 : body, &HeldBody::body);
-  if (wanted == held_.end()) return false;
-  *wanted = {};
-  if (!on) {
-    std::fill_n(data_->xfrc_applied + 6 * body, 6, 0.0);
-    return true;
-  }
-  wanted->body = body;
-  std::copy_n(data_->xipos + 3 * body, 3, wanted->position.begin());
-  std::copy_n(data_->xquat + 4 * body, 4, wanted->orientation.begin());
-  return true;
+void MujocoBackend::release(int hold) noexcept {
+  ActiveSprings& held = held_[at(hold)];
+  std::fill_n(data_->xfrc_applied + 6 * held.body, 6, 0.0);
+  held = {};
 }
 
 bool MujocoBackend::push(int body, double force, double direction, double duration) noexcept {

@@ -85,7 +85,7 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
     lab::warn_alike_seeds(scenario, world.variation, diagnostics);
     const behaviors::Behavior* const behavior = scenario.behavior.get();
     if (behavior != nullptr && behavior->has_robot) {
-      check_world_fits(world, behavior->robot, diagnostics);
+      check_world_fits(world, behavior->robot, diagnostics, lab::holds_of(scenario));
     }
     return physics_world(world);
   }

@@ -190,7 +190,7 @@ int run_behavior(RunOptions options) {
                          world.name,      backend.hardware->name(),
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware),
-                         drawn.values};
+                         drawn.values,    backend.constraints};
   const auto link = attach_link(options, loop, physics, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);

@@ -54,7 +54,7 @@ CheckedScenario load_checked(const RunOptions& options) {
   if (options.backend == "stub" && scenario.world_mark.line == 0) {
     world = stand_world(std::move(world), scenario.behavior->robot);
   }
-  check_world_fits(world, scenario.behavior->robot);
+  check_world_fits(world, scenario.behavior->robot, lab::holds_of(scenario));
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics, physics_world(world));
@@ -68,7 +68,9 @@ CheckedScenario load_checked(const RunOptions& options) {
   return {std::move(scenario), std::move(world)};
 }
 
-lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors) {
+// `aids`: grows by the holds that came.
+lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors,
+                              std::vector<std::string>& aids) {
   lab::ScenarioHooks hooks;
   hooks.fault = [&sensors](lab::InjectedFault fault, bool on) {
     using Fault = lab::InjectedFault;
@@ -82,9 +84,13 @@ lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors) {
   hooks.push = [mujoco](const std::string& body, double force, double direction, double duration) {
     return mujoco->push(mujoco->find_body(body), force, direction, duration);
   };
-  hooks.hold = [mujoco](const std::string& body, bool held) {
-    mujoco->hold(mujoco->find_body(body), held);
+  hooks.hold = [mujoco, &aids](const model::BodySprings& hold) {
+    const int number = mujoco->hold(mujoco->find_body(hold.body.name), hold);
+    const std::string name = "hold of " + hold.body.name;
+    if (number >= 0 && std::ranges::find(aids, name) == aids.end()) aids.push_back(name);
+    return number;
   };
+  hooks.release = [mujoco](int hold) { mujoco->release(hold); };
   return hooks;
 }
 
@@ -116,7 +122,8 @@ int run_scenario_file(RunOptions options) {
   const sim::WorldDescription world = draw_world(options, behavior, checked.world, drawn);
   Backend backend = make_backend(options, behavior, world);
   hal::SensorFaults sensors(*backend.hardware);
-  const lab::ScenarioHooks hooks = make_hooks(backend, sensors);
+  std::vector<std::string> aids = backend.constraints;
+  const lab::ScenarioHooks hooks = make_hooks(backend, sensors, aids);
   const auto problems = lab::unsupported(scenario, hooks);
   if (!problems.empty()) throw InputError(fmt::format("{}", fmt::join(problems, "\n")));
   engine::ControlLoop loop(behavior, sensors, loop_settings(options, world));
@@ -127,7 +134,7 @@ int run_scenario_file(RunOptions options) {
                          world.name,      sensors.name(),
                          options.seed,    "",
                          backend.physics, lab::unused_torque_loops(behavior, sensors),
-                         drawn.values};
+                         drawn.values,    backend.constraints};
   const auto link = attach_link(options, loop, physics_world(checked.world), spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);
@@ -136,6 +143,7 @@ int run_scenario_file(RunOptions options) {
   lab::ScenarioRun done = lab::run_scenario(scenario, options.seed, loop, hooks, std::move(spec));
   if (status) std::fputs("\r\033[K", stderr);
   done.outcome.log = id.log;
+  id.constraints = aids;
   if (log) {
     log->close();
     write_results(options, scenario, id, done);

@@ -2,6 +2,7 @@
 #include "apps/run/run_setup.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -59,9 +60,10 @@ sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescri
   return world;
 }
 
-void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot) {
+void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
+                      const std::vector<model::BodySprings>& holds) {
   core::Diagnostics diagnostics;
-  check_world_fits(world, robot, diagnostics);
+  check_world_fits(world, robot, diagnostics, holds);
   print_diagnostics(diagnostics);
   if (diagnostics.has_errors()) throw InputError("");
 }
@@ -149,10 +151,11 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
   backend.physics = fmt::format(
       "step 1/{:.0f} s, friction {:.3g}, feet r <= {:.0f} mm condim {}, damping {:g}, armature "
       "{:g}, "
-      "constraints {}, mocap bodies {}, mass {:.2f} kg",
+      "equality constraints {}, mocap bodies {}, mass {:.2f} kg",
       1.0 / f.timestep, f.friction, f.foot_radius_max * 1e3, f.condim_max, f.damping_max,
       f.armature_max, f.equalities, f.mocap_bodies, f.mass);
   backend.physics += more_physics(world);
+  for (const model::BodySprings& aid : world.constraints) backend.constraints.push_back(aid.name);
   backend.mujoco = mujoco.get();
   backend.hardware = std::move(mujoco);
   return backend;
@@ -286,6 +289,9 @@ std::unique_ptr<engine::LogWriter> open_log(const RunOptions& options,
   id.log = options.log + "/log.mcap";
   engine::LogHeader header = lab::make_log_header(behavior, log_source(options, world));
   header.run.emplace_back("variation", core::json_text(lab::variation_json(id)));
+  if (!id.constraints.empty()) {
+    header.run.emplace_back("constraints", fmt::format("{}", fmt::join(id.constraints, ", ")));
+  }
   return std::make_unique<engine::LogWriter>(id.log, behavior.signals, header);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "apps/run/run_options.h"
 #include "apps/shared/commands.h"
@@ -25,6 +26,7 @@ struct Backend {
   std::unique_ptr<hal::Hardware> hardware;
   sim::MujocoBackend* mujoco = nullptr;
   std::string physics;
+  std::vector<std::string> constraints;  // names of the world's external aids
 };
 
 // Loads a world by name or path. `beside`: a file in whose folder it is searched first; `place`:
@@ -34,8 +36,10 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
 // The world as a run declares it: without what is drawn if the options say so, hence judged with
 // what it uses.
 sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescription world);
-// Refuses a world that does not fit the robot: prints why and throws InputError.
-void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot);
+// Refuses a world that does not fit the robot, and springs of its constraints and of `holds` that
+// physics cannot integrate: prints why and throws InputError.
+void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
+                      const std::vector<model::BodySprings>& holds = {});
 // The world as this run's seed draws it, and the push that it draws into `spec`, which the backend
 // must then bring. On the stub only what a stand has is drawn. Throws InputError if a joint could
 // begin beyond its limits.

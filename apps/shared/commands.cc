@@ -19,6 +19,7 @@
 #include "core/text/printable.h"
 #include "core/text/search_folders.h"
 #include "model/mjcf.h"
+#include "sim/springs_check.h"
 #include "sim/world/description.h"
 
 namespace footfall::apps {
@@ -201,11 +202,14 @@ behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world) {
 }
 
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
-                      core::Diagnostics& diagnostics) {
-  sim::check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
-  if (world.links.empty() && world.variation.links.empty()) return;  // spares reading the model
+                      core::Diagnostics& diagnostics,
+                      const std::vector<model::BodySprings>& holds) {
+  sim::check_actuators(world, robot, diagnostics);
   try {
-    sim::check_links(world, model::body_names(robot.model_path), diagnostics);
+    const bool names = !world.links.empty() || !world.variation.links.empty();
+    // Spares reading the model.
+    if (names) sim::check_links(world, model::body_names(robot.model_path), diagnostics);
+    sim::check_springs(world, holds, robot, diagnostics);
   } catch (const std::runtime_error& error) {
     diagnostics.error({diagnostics.add_file(robot.path), 0, 0}, "model", error.what());
   }

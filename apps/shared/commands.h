@@ -12,6 +12,7 @@
 #include "behaviors/loader.h"
 #include "core/diagnostics/diagnostics.h"
 #include "core/yaml/key_table.h"
+#include "model/aids/springs.h"
 
 namespace CLI {
 class App;
@@ -97,9 +98,11 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(
 // frequency, so that it crosses 1 once, and delay only takes phase from it there.
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world);
 
-// Reports what the world needs and the robot lacks: links that it names, actuators.
+// Reports what the world needs and the robot lacks: links that it names, actuators; and springs of
+// its constraints and of a scenario's holds that physics cannot integrate.
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
-                      core::Diagnostics& diagnostics);
+                      core::Diagnostics& diagnostics,
+                      const std::vector<model::BodySprings>& holds = {});
 
 // Prints every problem on stderr, `error` and `warning` in colour on a terminal (unless NO_COLOR is
 // set).

@@ -26,7 +26,7 @@ behaviors::PhysicsWorld load_and_check_world(const std::string& path,
   world.variation = lab::variation_over(scenario, world.variation);
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
   const bool complete = !diagnostics.has_errors() && behavior != nullptr && behavior->has_robot;
-  if (complete) check_world_fits(world, behavior->robot, diagnostics);
+  if (complete) check_world_fits(world, behavior->robot, diagnostics, lab::holds_of(scenario));
   return physics_world(world);
 }
 

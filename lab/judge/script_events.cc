@@ -25,7 +25,7 @@ const char* what_of(const ScriptEntry& entry) {
   if (!entry.set.empty()) return "new values";
   if (entry.raise >= 0) return "event";
   if (entry.fault) return "fault";
-  return entry.hold.empty() ? "call" : "hold";
+  return entry.hold ? "hold" : "call";
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::vector<std::string> unsupported(const ScenarioDescription& scenario,
                                   place_in_file(scenario, entry.mark), what));
     };
     if (entry.push && !hooks.push) refuse("push: it has no physics");
-    if (!entry.hold.empty() && !hooks.hold) refuse("hold a body: it has no physics");
+    if (entry.hold && !hooks.hold) refuse("hold a body: it has no physics");
     if (entry.fault && entry.fault != InjectedFault::planner_dropout && !hooks.fault) {
       refuse("let its sensors fail");
     }
@@ -166,14 +166,19 @@ void ScenarioCues::act(const ScriptEntry& entry, RunLog& log) {
   if (entry.fault) {
     log.event("inject", fault_word(*entry.fault), "on");
     inject(*entry.fault, true);
-    lasting_.push_back({until, -1, *entry.fault});
+    lasting_.push_back({until, nullptr, -1, *entry.fault});
   }
-  if (!entry.hold.empty()) {
-    log.event("hold", entry.hold, "on");
-    hooks_.hold(entry.hold, true);
-    lasting_.push_back({until, static_cast<int>(bodies_.size()), {}});
-    bodies_.push_back(entry.hold);
+  if (entry.hold) hold(entry, until, log);
+}
+
+void ScenarioCues::hold(const ScriptEntry& entry, std::int64_t until, RunLog& log) {
+  const int number = hooks_.hold(*entry.hold);
+  if (number < 0) {
+    add_problem(entry, "too many holds at once");
+    return;
   }
+  log.event("hold", entry.hold->body.name, "on");
+  lasting_.push_back({until, &entry, number, {}});
 }
 
 void ScenarioCues::submit(const ScriptEntry& entry, const std::vector<behaviors::SlotValue>& values,
@@ -220,10 +225,9 @@ void ScenarioCues::inject(InjectedFault fault, bool on) {
 void ScenarioCues::end_lasting(RunLog& log) {
   const auto over = [&](const Lasting& lasting) {
     if (loop_.ticks() < lasting.until) return false;
-    if (lasting.body >= 0) {
-      const std::string& body = bodies_[at(lasting.body)];
-      hooks_.hold(body, false);
-      log.event("hold", body, "off");
+    if (lasting.hold != nullptr) {
+      hooks_.release(lasting.number);
+      log.event("hold", lasting.hold->hold->body.name, "off");
     } else {
       inject(lasting.fault, false);
       log.event("inject", fault_word(lasting.fault), "off");

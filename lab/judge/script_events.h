@@ -25,8 +25,10 @@ struct ScenarioHooks {
   // A horizontal force on a body for a time (N, rad from the heading, s); false: not now.
   std::function<bool(const std::string& body, double force, double direction, double duration)>
       push;
-  // People hold a body where it is, or let go of it.
-  std::function<void(const std::string& body, bool held)> hold;
+  // People hold a body where it is; the number of the hold, negative: not now.
+  std::function<int(const model::BodySprings& hold)> hold;
+  // They let go.
+  std::function<void(int number)> release;
   // Sensors fail, or come back.
   std::function<void(InjectedFault fault, bool on)> fault;
 };
@@ -67,8 +69,9 @@ class ScenarioCues {
     std::int64_t duration = -1;  // ticks, planned at entry, else of the last visit; -1: unknown
   };
   struct Lasting {
-    std::int64_t until = 0;  // tick
-    int body = -1;           // into bodies_ if something is held, else
+    std::int64_t until = 0;             // tick
+    const ScriptEntry* hold = nullptr;  // null: a fault
+    int number = -1;                    // of the hold
     InjectedFault fault = InjectedFault::mocap_dropout;
   };
 
@@ -80,6 +83,7 @@ class ScenarioCues {
               engine::EditSource source, RunLog& log);
   void hand_in(const ScriptEntry& entry, const engine::EditBatch& batch, RunLog& log);
   void call(const ScriptEntry& entry, RunLog& log);
+  void hold(const ScriptEntry& entry, std::int64_t until, RunLog& log);
   void inject(InjectedFault fault, bool on);
   void end_lasting(RunLog& log);
   std::int64_t ticks_of(double seconds) const;
@@ -92,7 +96,6 @@ class ScenarioCues {
   std::vector<Cue> cues_;
   std::vector<Watched> watched_;
   std::vector<Lasting> lasting_;
-  std::vector<std::string> bodies_;
   std::array<int, 4> failing_{};    // by InjectedFault: entries that have it fail now
   std::optional<ScenarioLua> lua_;  // if some entry calls
   std::vector<ScenarioFailure> problems_;

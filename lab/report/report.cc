@@ -51,6 +51,8 @@ std::string subtitle(const Log& log) {
     const std::string value = log.get(key);
     if (!value.empty()) out += (out.empty() ? "" : " · ") + escape_html(value);
   }
+  const std::string aids = log.get("constraints");
+  if (!aids.empty()) out += " · aided by " + escape_html(aids);
   if (!log.get("seed").empty()) out += " · seed " + escape_html(log.get("seed"));
   if (!log.get("version").empty()) out += " · Footfall " + escape_html(log.get("version"));
   return out;

@@ -279,6 +279,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["missed"] = result.missed;
   out["not_reached"] = result.not_reached;
   out["variation"] = variation_json(id);
+  out["constraints"] = id.constraints;
   out["log_lost_ticks"] = result.log_lost;
   if (!physics_only) {
     out["tick_us"] = tick_json(result.tick_time);
@@ -347,6 +348,9 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
                       result.tick_time.percentile(0.999) * 1e-3, result.real_time_factor);
   if (!id.unused_torque_loops.empty()) text += torque_loops_text(id);
   if (!id.variation.empty()) text += variation_text(id, result);
+  if (!id.constraints.empty()) {
+    text += fmt::format("  AIDED        by {}\n", fmt::join(id.constraints, ", "));
+  }
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
   return text;
 }

@@ -32,6 +32,8 @@ struct RunIdentity {
   std::vector<UnusedTorqueLoop> unused_torque_loops{};
   // What the seed drew, by name with its unit.
   std::vector<std::pair<std::string, std::vector<double>>> variation{};
+  // External aids: names of the world's constraints, and `hold of BODY` of a scenario.
+  std::vector<std::string> constraints{};
 };
 // {NAME: number or list}
 nlohmann::ordered_json variation_json(const RunIdentity& id);

@@ -14,6 +14,7 @@
 #include "core/diagnostics/diagnostics.h"
 #include "core/signal_table.h"
 #include "core/yaml/yaml.h"
+#include "model/aids/springs.h"
 
 namespace footfall::lab {
 
@@ -54,7 +55,7 @@ struct ScriptEntry {
   std::vector<behaviors::SlotValue> set;
   int raise = -1;  // into Behavior::events
   std::optional<InjectedFault> fault;
-  std::string hold;                // body to hold; empty: none
+  std::optional<model::BodySprings> hold;
   std::string call;                // function of ScenarioDescription::scripts to call; empty: none
   std::optional<double> duration;  // s, of a fault or hold; nullopt: to the end
   bool optional = false;           // the run may end before it comes

@@ -1,6 +1,7 @@
 // Keys and words of a scenario file; see keys.h.
 #include "lab/scenario/keys.h"
 
+#include "model/aids/springs.h"
 #include "model/variation/variation.h"
 
 namespace footfall::lab {
@@ -61,7 +62,8 @@ constexpr KeySpec kScriptRows[] = {
     key("set", by_name(one_or_list(any_quantity())), "parameters by name, without ramp"),
     key("raise", name_of("an event"), "an external event, together with the edit if there is one"),
     key("fault", choice(kInjectedFaultRows), "a component that fails"),
-    key("hold", name_of("a body"), "a body held in place"),
+    key("hold", name_of("a body"), map_of(model::kHoldKeys),
+        "a body held in place; as a map only along and about some axes, or with other springs"),
     key("call", name_of("a Lua function"),
         "a function of `scripts`: it sets values without ramp, and raises external events"),
     key("for", quantity(kTime), "duration of `fault` or `hold`").otherwise("to the end of the run"),

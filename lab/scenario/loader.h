@@ -25,4 +25,7 @@ bool is_scenario_file(const std::string& path);
 ScenarioDescription load_scenario(const std::string& path, const ScenarioOptions& options,
                                   core::Diagnostics& diagnostics);
 
+// The holds of its script.
+std::vector<model::BodySprings> holds_of(const ScenarioDescription& scenario);
+
 }  // namespace footfall::lab

@@ -8,6 +8,7 @@
 #include "engine/edits/door.h"
 #include "lab/scenario/context.h"
 #include "lab/scenario/keys.h"
+#include "lab/scenario/loader.h"
 
 namespace footfall::lab {
 namespace {
@@ -105,6 +106,14 @@ std::string read_body(ScenarioContext& context, const YamlNode& node) {
                               core::did_you_mean_or_list(node.scalar, *context.bodies)));
   }
   return node.scalar;
+}
+
+model::BodySprings read_held(ScenarioContext& context, const YamlNode& node) {
+  model::BodySprings hold = model::read_hold(node, context.diagnostics);
+  if (context.bodies && !hold.body.name.empty()) {
+    model::check_links({hold.body}, *context.bodies, context.diagnostics);
+  }
+  return hold;
 }
 
 std::string read_call(ScenarioContext& context, const YamlNode& node) {
@@ -298,7 +307,7 @@ void read_entry(ScenarioContext& context, const YamlNode& node) {
   if (const YamlNode* edit = node.find("edit")) entry.edit = read_changes(context, *edit, true);
   if (const YamlNode* set = node.find("set")) entry.set = read_changes(context, *set, false);
   if (const YamlNode* raise = node.find("raise")) entry.raise = read_raise(context, *raise);
-  if (const YamlNode* hold = node.find("hold")) entry.hold = read_body(context, *hold);
+  if (const YamlNode* hold = node.find("hold")) entry.hold = read_held(context, *hold);
   if (const YamlNode* call = node.find("call")) entry.call = read_call(context, *call);
   if (const YamlNode* fault = node.find("fault")) {
     const auto choice =
@@ -317,6 +326,14 @@ void read_entry(ScenarioContext& context, const YamlNode& node) {
 void load_script(ScenarioContext& context, const YamlNode& node) {
   if (!core::expect_sequence(node, "a list of entries", context.diagnostics)) return;
   for (const YamlNode& item : node.items) read_entry(context, item);
+}
+
+std::vector<model::BodySprings> holds_of(const ScenarioDescription& scenario) {
+  std::vector<model::BodySprings> holds;
+  for (const ScriptEntry& entry : scenario.script) {
+    if (entry.hold) holds.push_back(*entry.hold);
+  }
+  return holds;
 }
 
 }  // namespace footfall::lab

@@ -220,10 +220,9 @@ class WorldLoader {
   }
 
   void read_constraints(const YamlNode& node) {
-    if (!core::expect_sequence(node, "a list of names", diagnostics_)) return;
-    for (const YamlNode& item : node.items) {
-      const auto name = core::read_name(item, diagnostics_, "an external aid's name");
-      if (name) world_.constraints.push_back({*name, item.mark});
+    world_.constraints = model::read_constraints(node, diagnostics_);
+    for (const model::BodySprings& aid : world_.constraints) {
+      if (!aid.body.name.empty()) world_.links.push_back(aid.body);
     }
   }
 
@@ -336,15 +335,23 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
   for (const auto& [name, mark] : world.sensors.marks) {
     refuse(mark, fmt::format("sensor imperfections ('{}')", name));
   }
-  for (const ConstraintName& constraint : world.constraints) {
-    refuse(constraint.mark, fmt::format("the external aid '{}'", constraint.name));
-  }
 }
 
 void check_links(const WorldDescription& world, const std::vector<std::string>& bodies,
                  Diagnostics& diagnostics) {
   model::check_links(world.links, bodies, diagnostics);
   model::check_links(world.variation.links, bodies, diagnostics);
+}
+
+void check_actuators(const WorldDescription& world, const model::RobotDescription& robot,
+                     Diagnostics& diagnostics) {
+  check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
+  if (world.actuators.model != ActuatorModel::ideal || !world.variation.draws_actuators()) return;
+  core::Mark mark = world.variation.actuators.mark;
+  mark.file = diagnostics.add_file(world.variation.actuators.file);
+  diagnostics.error(mark, "actuators",
+                    "the world's actuators are ideal, without springs and friction: expected "
+                    "'actuators: {model: series_elastic}' in it, or none of these draws");
 }
 
 WorldDescription with_draw(WorldDescription world, const model::Draw& drawn) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.h"
+#include "model/aids/springs.h"
 #include "model/control_model.h"
 #include "model/height_surface.h"
 #include "model/variation/variation.h"
@@ -59,12 +60,6 @@ struct PhysicsSettings {
   double hands = 50.0;
 };
 
-// A named external aid (a boom, a planarizer); absent unless the world names it.
-struct ConstraintName {
-  std::string name;
-  core::Mark mark;
-};
-
 // What holds the robot where there is no physics (`--backend stub`): each joint is an inertia on a
 // spring to its start.
 struct StandSettings {
@@ -93,8 +88,8 @@ struct WorldDescription {
   ActuatorSettings actuators;
   SensorSettings sensors;
   model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
-  std::vector<model::NamedLink> links;  // of its `com`
-  std::vector<ConstraintName> constraints;
+  std::vector<model::NamedLink> links;  // of its `com` and its constraints
+  std::vector<model::BodySprings> constraints;
   double planner_latency = 2e-3;  // s, between planner request and plan, in lock-step
   model::Variation variation;     // what a seed draws
   StartOffsets start;             // what was drawn
@@ -116,6 +111,11 @@ WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);
 // Reports everything that a world asks for and this simulator does not support (id "unsupported"),
 // so that nothing in a file is ignored silently.
 void check_supported(const WorldDescription& world, core::Diagnostics& diagnostics);
+
+// Reports what actuators need and the robot lacks, what its drives cannot be simulated with, and
+// draws of actuators that are ideal.
+void check_actuators(const WorldDescription& world, const model::RobotDescription& robot,
+                     core::Diagnostics& diagnostics);
 
 // Reports links named by the world that a robot does not have; `bodies`: names of its model's.
 void check_links(const WorldDescription& world, const std::vector<std::string>& bodies,

@@ -1,6 +1,7 @@
 // Keys and words of a world file; see keys.h.
 #include "sim/world/keys.h"
 
+#include "model/aids/springs.h"
 #include "model/variation/variation.h"
 
 namespace footfall::sim {
@@ -22,8 +23,8 @@ constexpr KeySpec kWorldRows[] = {
     key("sensors", map_of(kWorldSensorsKeys), "sensor imperfections"),
     key("control_model", map_of(kControlModelKeys),
         "model errors of the controller, relative to the simulation"),
-    key("constraints", list(name_of("an external aid")),
-        "e.g. a boom or a planarizer; none by default"),
+    key("constraints", by_name(map_of(model::kConstraintKeys)),
+        "external aids by name, such as a planarizer, a hoist or a harness; none by default"),
     key("planner_latency", quantity(kTime), "time from a planner request to its answer")
         .otherwise("2 ms"),
     key("variation", map_of(model::kVariationKeys), "what a seed draws"),

@@ -162,7 +162,7 @@ TEST_F(ScenarioLoader, AScenarioInheritsFromItsBase) {
   EXPECT_EQ(diagnostics_.to_string(), "");
   EXPECT_EQ(scenario.seeds, std::vector<std::uint64_t>{7});
   EXPECT_EQ(scenario.script.size(), 7U);
-  EXPECT_EQ(scenario.script.back().hold, "torso");
+  EXPECT_EQ(scenario.script.back().hold.value().body.name, "torso");
   EXPECT_EQ(scenario.expectations.size(), 5U);
 }
 TEST_F(ScenarioLoader, ANameThatFitsNothingIsReportedWithTheNearest) {

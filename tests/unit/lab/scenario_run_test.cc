@@ -81,9 +81,9 @@ class ScenarioRunTest : public testing::Test {
       acts_.push_back({loop.ticks(), body + " " + std::to_string(static_cast<int>(force))});
       return true;
     };
-    hooks.hold = [&](const std::string& body, bool held) {
-      acts_.push_back({loop.ticks(), body + (held ? " held" : " free")});
-    };
+    const auto note = [&](const std::string& act) { acts_.push_back({loop.ticks(), act}); };
+    hooks.hold = [&](const auto& hold) { return note(hold.body.name + " held"), 3; };
+    hooks.release = [&](int hold) { note(std::to_string(hold) + " free"); };
     hooks.fault = [&](InjectedFault fault, bool on) {
       acts_.push_back({loop.ticks(), on ? "fails" : "works"});
       sensors.fail(
@@ -119,7 +119,7 @@ TEST_F(ScenarioRunTest, EntriesActAtTheirTimes) {
   run("script:\n"
       "  - {at: 200 ms, push: {body: torso, force: 5 N, for: 1 ms}}\n"
       "  - {at: 300 ms, hold: torso, for: 20 ms}\n");
-  EXPECT_EQ(acts_, (std::vector<Act>{{300, "torso 5"}, {450, "torso held"}, {480, "torso free"}}));
+  EXPECT_EQ(acts_, (std::vector<Act>{{300, "torso 5"}, {450, "torso held"}, {480, "3 free"}}));
 }
 // b is entered in tick 150 and lasts 150 ticks: half of it has passed before tick 225.
 TEST_F(ScenarioRunTest, APhaseIsAPartOfTheStatesDuration) {

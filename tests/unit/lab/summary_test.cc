@@ -52,6 +52,16 @@ TEST(Summary, HasEveryKeyThatScriptsRelyOn) {
   EXPECT_TRUE(json["faults"].is_object());
 }
 
+TEST(Summary, AnAidedRunNeverLooksUnaided) {
+  lab::RunIdentity id;
+  EXPECT_EQ(lab::summary_json(id, {})["constraints"], nlohmann::ordered_json::array());
+  EXPECT_EQ(lab::summary_text(id, {}).find("AIDED"), std::string::npos);
+  id.constraints = {"harness", "hold of torso"};
+  EXPECT_EQ(lab::summary_json(id, {})["constraints"][1], "hold of torso");
+  EXPECT_NE(lab::summary_text(id, {}).find("  AIDED        by harness, hold of torso\n"),
+            std::string::npos);
+}
+
 // Of the two tables one is given to six joints in one state and to three in the other.
 TEST(Summary, TellsOfATorqueLoopThatTheBackendDoesNotUse) {
   StubRig rig(R"(

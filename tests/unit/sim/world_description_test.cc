@@ -24,7 +24,7 @@ sensors:
   mocap: {rate: 480 Hz, delay: 5 ms, noise: 1 mm, occlusion: 5 %}
   switch: {delay: 2 ms, threshold: 20 N}
 control_model: {mass: "+5 %", com: {torso: [1 cm, 0 m, 0 m]}}
-constraints: [planarizer]
+constraints: {planarizer: {body: torso, y: {stiffness: 20000 N/m}}}
 planner_latency: 5 ms
 physics:
   {timestep_divisor: 4, integrator: implicit, solver: pgs, cone: pyramidal, impratio: 1,
@@ -124,8 +124,8 @@ TEST_F(WorldDescriptionTest, WhatTheSimulatorCannotDoIsRefusedAtItsPlace) {
       "10:45: error: the simulator does not support sensor imperfections ('mocap.noise') yet\n"
       "10:62: error: the simulator does not support sensor imperfections ('mocap.occlusion') yet\n"
       "11:19: error: the simulator does not support sensor imperfections ('switch.delay') yet\n"
-      "11:36: error: the simulator does not support sensor imperfections ('switch.threshold') yet\n"
-      "13:15: error: the simulator does not support the external aid 'planarizer' yet\n");
+      "11:36: error: the simulator does not support sensor imperfections ('switch.threshold') "
+      "yet\n");
 }
 
 TEST_F(WorldDescriptionTest, ADelayAndAWrongControlModelAreSupported) {
