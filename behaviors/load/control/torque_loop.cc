@@ -211,12 +211,13 @@ class TorqueLoopLoader {
     const auto entries = core::match_names(node, joints_, "joint", context_.diagnostics);
     if (context_.diagnostics.error_count() != before) return;
     const core::YamlEntry* refused = nullptr;  // a pattern's value is refused once
+    bool good = true;                          // and so are the joints not named
     for (std::size_t j = 0; j < entries.size(); ++j) {
       const core::YamlEntry* const entry = entries[j];
       if (entry == nullptr) {
-        is_in_range(
-            gain, j,
-            fmt::format("joint '{}', not named here, has {:g}, which", joints_[j], gain.values[j]));
+        good = good && is_in_range(gain, j,
+                                   fmt::format("joint '{}', not named here, has {:g}, which",
+                                               joints_[j], gain.values[j]));
       } else if (entry != refused && !read_value(entry->value, gain, j)) {
         refused = entry;
       }
