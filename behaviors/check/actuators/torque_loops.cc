@@ -7,8 +7,8 @@
 //   hal/actuators/passivity.h, `direct` by a sweep of its admittance;
 // both also at the ends of the gains' live ranges, one at a time, as task gains are.
 //
-// A loop without damping of its own is not judged if no file gives one (a cascade without
-// velocity_p, a direct loop without d on a robot without `drives`): the robot's is not known.
+// A cascade without velocity_p asks for no motor torque: stable and passive. A direct loop without
+// d on a robot without `drives` is not judged: its damping is not known.
 #include "behaviors/compiled/torque_loops.h"
 
 #include <fmt/format.h>
@@ -94,10 +94,10 @@ class JointLoop {
     const bool proportional = !is_stable(part);
     part.p = 0.0;
     Gain gain = outer ? &TorqueLoopGains::i : &TorqueLoopGains::velocity_i;
-    if (!is_stable(part)) {
+    if (gains_.*damping == 0.0 || !is_stable(part)) {
       gain = damping;
     } else if (proportional) {
-      gain = gains_.*damping == 0.0 ? damping : &TorqueLoopGains::p;
+      gain = &TorqueLoopGains::p;
     }
     Remedy remedy = {gain};
     remedy.at_least = gains_.*gain == 0.0;
@@ -235,10 +235,8 @@ class TorqueLoopCheck {
   }
 
   bool is_unknown(const TorqueLoopTable& table, const TorqueLoopGains& gains) const {
-    if (table.type == TorqueLoopGains::Type::cascade) {
-      return gains.velocity_p == 0.0 && gains.velocity_i == 0.0;
-    }
-    return gains.damping == 0.0 && b().robot.drives.torque_loop.empty() &&
+    return table.type == TorqueLoopGains::Type::direct && gains.damping == 0.0 &&
+           b().robot.drives.torque_loop.empty() &&
            table.slots[index_of(&TorqueLoopGains::damping)] < 0;
   }
 

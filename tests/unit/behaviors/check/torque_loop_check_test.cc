@@ -203,6 +203,22 @@ TEST(TorqueLoopCheck, WithoutInnerGainNothingIsKnown) {
   EXPECT_THAT(physics(with_table("  t: {p: 200, velocity_p: 5}\n"), bare), HasSubstr("unstable"));
 }
 
+TEST(TorqueLoopCheck, AnInnerIntegralNeedsAnInnerGain) {
+  const std::string found = physics(with_table(
+      "  ranges: {velocity_p: [0, 8]}\n  t: {p: 20, velocity_p: {right_hip: 5}, velocity_i: 1}\n"));
+  EXPECT_THAT(found, HasSubstr("at the end of the range of 'torque_loop.t.velocity_p'"));
+  EXPECT_THAT(found, HasSubstr("velocity_p 0 Nm s: at least "));
+}
+
+TEST(TorqueLoopCheck, ARangeOfAnInnerGainIsTriedThoughItsValueIsZero) {
+  const std::string text =
+      with_table("  ranges: {velocity_p: [0, 5000]}\n  t: {p: 20, velocity_p: 0}\n");
+  EXPECT_THAT(physics(text),
+              StartsWith(place_of(text, "0}\nstacks") + "warning: torque_loop 't' is "
+                                                        "unstable in "));
+  EXPECT_THAT(physics(text), Not(HasSubstr("error")));
+}
+
 TEST(TorqueLoopCheck, ALiveEditThatWouldBeUnstableIsRefused) {
   const auto b = load(with_table("  ranges: {p: [0, 200]}\n  t: {p: 20, velocity_p: 5}\n"));
   behaviors::EditedValues edited(*b);

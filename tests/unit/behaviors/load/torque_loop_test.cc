@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "behaviors/compiled/take_over_map.h"
 #include "behaviors/compiled/torque_loops.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/unit/behaviors/behavior_test_support.h"
@@ -170,6 +171,26 @@ TEST(TorqueLoopTable, ARangeHoldsForTablesOfBothTypesWithoutUnits) {
       with_loops("  ranges: {p: [0, 60]}\n  t: {p: 43}\n  u: {type: direct, p: 20}\n", "t", "u"));
   for (const char* name : {"torque_loop.t.p", "torque_loop.u.p"}) {
     EXPECT_EQ(b->parameters[static_cast<std::size_t>(b->find_parameter(name))].max, 60.0) << name;
+  }
+}
+
+// A reload keeps edited values by name, also where tables moved; p of another type is another
+// value.
+TEST(TorqueLoopTable, AReloadMapsItsValuesByName) {
+  const auto from = load(with_loops("  t: {p: 43, i: 1}\n  u: {p: 20}\n", "t", "u"));
+  const auto to =
+      load(with_loops("  u: {type: direct, p: 20}\n  t: {i: 2, p: {\"*\": 40}}\n", "t", "u"));
+  const behaviors::TakeOverMap map = behaviors::map_take_over(*from, *to);
+  const auto slot = [](const Behavior& b, const char* name) {
+    return b.parameters[static_cast<std::size_t>(b.find_parameter(name))].slot;
+  };
+  const auto mapped = [&](const char* name, int joint) {
+    return map.slots[static_cast<std::size_t>(slot(*to, name) + joint)];
+  };
+  for (int joint = 0; joint < 6; ++joint) {
+    EXPECT_EQ(mapped("torque_loop.t.p", joint), slot(*from, "torque_loop.t.p") + joint);
+    EXPECT_EQ(mapped("torque_loop.t.i", joint), slot(*from, "torque_loop.t.i") + joint);
+    EXPECT_EQ(mapped("torque_loop.u.p", joint), -1);
   }
 }
 
