@@ -7,6 +7,7 @@
 
 #include "behaviors/compiled/chart.h"
 #include "behaviors/compiled/trajectory.h"
+#include "hal/actuators/torque_loop.h"
 #include "tasks/active_set.h"
 
 namespace footfall::behaviors {
@@ -87,16 +88,24 @@ struct TransitionSpec {
 
 struct ControlSpec {
   std::vector<int> contacts;
-  Range tasks;                    // into Behavior::tasks, by priority, then in document order
-  Range internals;                // into Behavior::internals
-  int transition = -1;            // into Behavior::contact_transitions
-  std::vector<int> torque_loops;  // by joint: index into Behavior::torque_loops, -1: unchanged
+  Range tasks;          // into Behavior::tasks, by priority, then in document order
+  Range internals;      // into Behavior::internals
+  int transition = -1;  // into Behavior::contact_transitions
+  // By joint: index into Behavior::torque_loops, -1: the robot's own gains; empty: of all joints.
+  std::vector<int> torque_loops;
 };
 
-// Gains of the actuators' own torque loop, by joint; NaN if not in the table.
+// A table of gains of the actuators' own torque loops. The gains in force: torque_loops.h.
 struct TorqueLoopTable {
   std::string name;
-  std::vector<double> p, i, d;
+  hal::TorqueLoopGains::Type type = hal::TorqueLoopGains::Type::cascade;
+  // By model::kTorqueLoopGainKeys: the first slot of one value a joint, -1 if the table does not
+  // name the gain.
+  std::array<int, 7> slots{-1, -1, -1, -1, -1, -1, -1};
+  // By joint: type, damping, and the gains that the table does not name.
+  std::vector<hal::TorqueLoopGains> unnamed;
+  std::array<std::vector<core::Mark>, 7> marks;  // of the values, by gain and joint
+  core::Mark mark;                               // of the table's name
 };
 
 // One `invoke` of a planner.

@@ -24,8 +24,8 @@ constexpr KeySpec kBehaviorRows[] = {
     key("events", by_name(text_of("a description")),
         "events that may be raised externally, each with a description"),
     key("gains", map_of(kGainTablesKeys), "tables of task gains, and their ranges"),
-    key("torque_loop", by_name(map_of(model::kTorqueLoopKeys)),
-        "tables of the actuators' own gains, chosen in stacks and states"),
+    key("torque_loop", map_of(kTorqueLoopTablesKeys),
+        "tables of the actuators' own gains, chosen in stacks and states, and their ranges"),
     key("planners", by_name(map_of(kPlannerKeys)), "planners that states may `invoke`"),
     key("stacks", by_name(map_of(kStackKeys)), "named sets of contacts, tasks and internal forces"),
     key("templates", by_name(map_of(kTemplateKeys)),
@@ -81,6 +81,25 @@ constexpr KeySpec kGainTablesRows[] = {
 };
 constexpr ValueSpec kGainTable = map_of(kGainTableKeys);
 constexpr ValueSpec kGains = map_of(kGainsKeys);
+
+constexpr KeySpec kTorqueLoopRangesRows[] = {
+    key("p", pair(any_quantity("a gain")), "`[MINIMUM, MAXIMUM]` of every p"),
+    key("i", pair(any_quantity("a gain")), "`[MINIMUM, MAXIMUM]` of every i"),
+    key("d", pair(quantity(kAngularMomentum, "a damping")), "`[MINIMUM, MAXIMUM]` of every d"),
+    key("forward", pair(quantity(kNone)), "`[MINIMUM, MAXIMUM]` of every forward"),
+    key("observer", pair(quantity(kRate, "a frequency in Hz")),
+        "`[MINIMUM, MAXIMUM]` of every observer"),
+    key("velocity_p", pair(quantity(kAngularMomentum, "a damping")),
+        "`[MINIMUM, MAXIMUM]` of every velocity_p"),
+    key("velocity_i", pair(quantity(kTorque, "a stiffness")),
+        "`[MINIMUM, MAXIMUM]` of every velocity_i"),
+};
+
+constexpr KeySpec kTorqueLoopTablesRows[] = {
+    key("ranges", map_of(kTorqueLoopRangesKeys),
+        "bounds of the gains of all tables, 0 or more; with them gains are live"),
+};
+constexpr ValueSpec kTorqueLoop = map_of(model::kTorqueLoopKeys);
 
 constexpr WordSpec kPlannerTypeRows[] = {
     {"velocity_reversal",
@@ -179,6 +198,18 @@ constinit const core::KeyTable kGainsKeys = {
     .keys = kGainsRows,
     .one_of = {"kp ki kd"},
     .part = true};
+constinit const core::KeyTable kTorqueLoopTablesKeys = {
+    .id = "torque_loop_tables",
+    .doc = "Gains of the actuators' own torque loops, in tables by name.",
+    .keys = kTorqueLoopTablesRows,
+    .others = &kTorqueLoop,
+    .others_name = "a table"};
+constinit const core::KeyTable kTorqueLoopRangesKeys = {
+    .id = "torque_loop_ranges",
+    .doc =
+        "Bounds of the torque loops' gains. The units of p and i are those of the tables' type: "
+        "with tables of both types they are written without.",
+    .keys = kTorqueLoopRangesRows};
 constinit const core::KeyTable kPlannerKeys = {.id = "planner",
                                                .doc = "Computes plans outside of the tick.",
                                                .keys = kPlannerRows,

@@ -12,6 +12,8 @@ extern const core::KeyTable kBehaviorKeys;  // the root of the file
 extern const core::KeyTable kParameterKeys;
 extern const core::KeyTable kGainTablesKeys;  // `gains`: ranges, and tables by name
 extern const core::KeyTable kGainRangesKeys;
+extern const core::KeyTable kTorqueLoopTablesKeys;  // `torque_loop`: ranges, and tables by name
+extern const core::KeyTable kTorqueLoopRangesKeys;
 extern const core::KeyTable kScriptsKeys;
 extern const core::KeyTable kGainTableKeys;  // one table: gains by task
 extern const core::KeyTable kGainsKeys;      // kp, ki, kd

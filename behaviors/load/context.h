@@ -55,10 +55,10 @@ struct GainEntry {
 };
 
 // `--set gains.TABLE.TASK.kp.AXIS=VALUE`, or of gains written in a task: waits until the task and
-// its axes are known.
+// its axes are known; `--set torque_loop.TABLE.p.JOINT=VALUE` until the robot is.
 struct GainSetting {
   std::string name;  // as given
-  std::string gain;  // `gains.TABLE.TASK.kp`
+  std::string gain;  // `gains.TABLE.TASK.kp`, `torque_loop.TABLE.p`
   std::string axis;  // its name, or its number; empty: all
   core::YamlNode value;
 };

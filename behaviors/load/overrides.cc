@@ -9,6 +9,7 @@
 #include "behaviors/load/steps.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/text/dotted_name.h"
+#include "model/robot/torque_loop.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -113,7 +114,7 @@ void set_parameter(LoadContext& context, const std::string& name, core::YamlNode
   core::YamlNode* parameter = parameters == nullptr ? nullptr : child(*parameters, name);
   if (parameter == nullptr && parameters != nullptr) parameter = component(*parameters, name);
   if (parameter == nullptr) {
-    std::vector<std::string> known = {"gains", "planners"};
+    std::vector<std::string> known = {"gains", "planners", "torque_loop"};
     if (parameters != nullptr) known = keys_of(*parameters);
     context.error(value.mark, "unknown-parameter",
                   fmt::format("--set {}: unknown parameter '{}'{}", name, name,
@@ -157,6 +158,43 @@ void set_gain(LoadContext& context, const std::string& name, core::YamlNode valu
   put_or_replace(*table, parts.back(), std::move(value));
 }
 
+// `torque_loop.stance.p`, or one joint of it, `.p.right_knee` and `.p[2]`. A gain that the table
+// does not name yet is added to it.
+void set_torque_loop(LoadContext& context, const std::string& name, core::YamlNode value) {
+  std::string gain = name, joint;
+  if (const auto parts = core::split_dots(name); parts.size() > 3 || name.ends_with(']')) {
+    const auto [whole, part] = split_part(name);
+    gain = whole, joint = part;
+  }
+  const std::vector<std::string> parts = core::split_dots(gain);
+  const bool known = parts.size() == 3 && parts[1] != "ranges" &&
+                     core::find_key(model::kTorqueLoopKeys, parts[2]) != nullptr;
+  const bool by_joint = known && parts[2] != "type" && parts[2] != "damps";
+  if (!known || (!joint.empty() && !by_joint)) {
+    context.error(value.mark, "unknown-setting",
+                  fmt::format("--set {}: expected torque_loop.TABLE.GAIN ({}), or one joint of it, "
+                              "torque_loop.TABLE.GAIN.JOINT",
+                              name, fmt::join(core::key_names(model::kTorqueLoopKeys), ", ")));
+    return;
+  }
+  core::YamlNode* const table = require_map(context, name, std::span(parts).first(2), value.mark);
+  if (table == nullptr) return;
+  if (joint.empty()) {
+    put_or_replace(*table, parts.back(), std::move(value));
+    return;
+  }
+  const bool number = joint.find_first_not_of("0123456789") == std::string::npos;
+  if (child(*table, parts.back()) == nullptr && !number) {
+    core::YamlNode map;
+    map.kind = core::YamlNode::Kind::map;
+    map.mark = value.mark;
+    put_or_replace(map, joint, std::move(value));
+    put_or_replace(*table, parts.back(), std::move(map));
+    return;
+  }
+  context.gain_settings.push_back({name, gain, joint, std::move(value)});
+}
+
 // `planners.foot.kappa`, or one value of a list, `.reversal.x` and `.reversal[0]`.
 void set_planner(LoadContext& context, const std::string& name, core::YamlNode value) {
   const std::vector<std::string> parts = core::split_dots(name);
@@ -185,6 +223,8 @@ void apply(LoadContext& context, const std::string& name, const std::string& tex
   const std::vector<std::string> parts = core::split_dots(name);
   if (parts[0] == "gains") {
     set_gain(context, name, std::move(value));
+  } else if (parts[0] == "torque_loop") {
+    set_torque_loop(context, name, std::move(value));
   } else if (parts[0] == "planners") {
     set_planner(context, name, std::move(value));
   } else {

@@ -5,6 +5,7 @@
 #include "behaviors/load/control/gains.h"
 #include "behaviors/save/parts.h"
 #include "core/same_bits.h"
+#include "core/text/dotted_name.h"
 #include "core/units/quantity_text.h"
 #include "core/yaml/glob.h"
 #include "core/yaml_text/write.h"
@@ -47,6 +48,15 @@ ValueHome home_of_parameter(const SaveSource& source, const std::string& name) {
     home.path.emplace_back("value");
     home.node = home.node->find("value");
   }
+  return home;
+}
+
+// Names of tables and gains have no dots.
+ValueHome home_of_torque_loop(const SaveSource& source, const ParameterInfo& info) {
+  ValueHome home;
+  home.path = core::split_dots(info.name);
+  home.node = node_at(source.context.root, home.path);
+  home.axes = info.axes;
   return home;
 }
 
@@ -133,6 +143,7 @@ std::vector<KeyPath> paths_of(const core::YamlNode& root, const core::YamlNode& 
 
 ValueHome find_home(const SaveSource& source, const ParameterInfo& info) {
   if (!info.gain) return home_of_parameter(source, info.name);
+  if (info.of_torque_loop()) return home_of_torque_loop(source, info);
   ValueHome home;
   const std::size_t dot = info.name.rfind('.');
   const auto found = source.context.gain_entries.find(info.name.substr(0, dot));

@@ -262,6 +262,9 @@ std::string unit_text(Dimension dimension) {
   if (dimension == kPower) return "W";
   if (dimension == Dimension{0, 1, -2}) return "N/m";
   if (dimension == Dimension{0, 1, -1}) return "N s/m";
+  // Gains of cascaded torque loops: without the angle their numbers would not be recognized.
+  if (dimension == Dimension{-2, -1, 1}) return "rad/s/Nm";
+  if (dimension == Dimension{-2, -1, 0}) return "rad/s^2/Nm";
 
   std::string above;
   std::string below;

@@ -90,7 +90,10 @@ void check_events(const Behavior& behavior, const EditBatch& batch,
 
 std::string reason_not_live(const ParameterInfo& info) {
   if (info.variable) return "the behavior's actions set it";
-  if (info.gain) return "its table has no range for it: give one under 'gains.ranges'";
+  if (info.gain) {
+    return fmt::format("its table has no range for it: give one under '{}.ranges'",
+                       info.of_torque_loop() ? "torque_loop" : "gains");
+  }
   return info.has_range() ? "the file does not say so: give it 'live: true'"
                           : "the file does not say so: give it a range and 'live: true'";
 }

@@ -22,9 +22,9 @@ void read_gain(const YamlNode& node, const TorqueLoopKey& key, RobotDescription&
   std::vector<hal::TorqueLoopGains>& loops = robot.drives.torque_loop;
   const auto read = [&](const YamlNode& value, std::size_t joint) {
     hal::TorqueLoopGains& gains = loops[joint];
-    const auto number =
-        core::read_bounded(value, key.dimension(gains.type), 0.0,
-                           std::numeric_limits<double>::infinity(), diagnostics, "a gain");
+    const auto number = core::read_bounded(value, key.dimension(gains.type), 0.0,
+                                           std::numeric_limits<double>::infinity(), diagnostics,
+                                           key.noun(gains.type));
     gains.*key.member = number.value_or(gains.*key.member);
     return number.has_value();
   };

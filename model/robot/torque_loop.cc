@@ -40,6 +40,11 @@ constexpr KeySpec kRows[] = {
 constexpr Dimension kPerAction{-2, -1, 1};   // rad/s per N m
 constexpr Dimension kPerInertia{-2, -1, 0};  // rad/s^2 per N m
 
+constexpr std::string_view kDamping = "a damping (Nm s/rad)";
+constexpr std::string_view kNumber = "a plain number";
+constexpr std::string_view kFrequency = "a frequency (Hz)";
+constexpr std::string_view kStiffness = "a stiffness (Nm/rad)";
+
 }  // namespace
 
 constinit const core::KeyTable kTorqueLoopKeys = {
@@ -53,13 +58,18 @@ constinit const std::span<const core::WordSpec> kTorqueLoopTypes = kTypeRows;
 constinit const std::span<const core::WordSpec> kTorqueLoopDampings = kDampingRows;
 
 constinit const std::array<TorqueLoopKey, 7> kTorqueLoopGainKeys = {{
-    {"p", &TorqueLoopGains::p, true, true, kPerAction, kNone},
-    {"i", &TorqueLoopGains::i, true, true, kPerInertia, kRate},
-    {"d", &TorqueLoopGains::damping, false, true, kAngularMomentum, kAngularMomentum},
-    {"forward", &TorqueLoopGains::forward, false, true, kNone, kNone},
-    {"observer", &TorqueLoopGains::observer, false, true, kRate, kRate},
-    {"velocity_p", &TorqueLoopGains::velocity_p, true, false, kAngularMomentum, kAngularMomentum},
-    {"velocity_i", &TorqueLoopGains::velocity_i, true, false, kTorque, kTorque},
+    {"p", &TorqueLoopGains::p, true, true, kPerAction, kNone,
+     "a motor velocity per torque (rad/s/Nm)", "a plain number"},
+    {"i", &TorqueLoopGains::i, true, true, kPerInertia, kRate,
+     "a motor acceleration per torque (rad/s^2/Nm)", "a rate (1/s)"},
+    {"d", &TorqueLoopGains::damping, false, true, kAngularMomentum, kAngularMomentum, kDamping,
+     kDamping},
+    {"forward", &TorqueLoopGains::forward, false, true, kNone, kNone, kNumber, kNumber},
+    {"observer", &TorqueLoopGains::observer, false, true, kRate, kRate, kFrequency, kFrequency},
+    {"velocity_p", &TorqueLoopGains::velocity_p, true, false, kAngularMomentum, kAngularMomentum,
+     kDamping, kDamping},
+    {"velocity_i", &TorqueLoopGains::velocity_i, true, false, kTorque, kTorque, kStiffness,
+     kStiffness},
 }};
 
 }  // namespace footfall::model

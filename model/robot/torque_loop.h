@@ -21,12 +21,16 @@ struct TorqueLoopKey {
   double hal::TorqueLoopGains::*member;
   bool of_cascade, of_direct;
   core::Dimension cascade, direct;
+  std::string_view cascade_noun, direct_noun;  // for messages, with the unit
 
   bool belongs_to(hal::TorqueLoopGains::Type type) const {
     return type == hal::TorqueLoopGains::Type::cascade ? of_cascade : of_direct;
   }
   core::Dimension dimension(hal::TorqueLoopGains::Type type) const {
     return type == hal::TorqueLoopGains::Type::cascade ? cascade : direct;
+  }
+  std::string_view noun(hal::TorqueLoopGains::Type type) const {
+    return type == hal::TorqueLoopGains::Type::cascade ? cascade_noun : direct_noun;
   }
 };
 extern const std::array<TorqueLoopKey, 7> kTorqueLoopGainKeys;

@@ -92,6 +92,7 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
   check_references(context);
   check_feed_forward(context);
   check_gains(context);
+  check_torque_loops(context);
   check_force_feedback(context);
   check_planners(context);
   check_torque_steps(context);
@@ -173,6 +174,7 @@ std::vector<core::Diagnostic> EditedValues::errors(std::span<const double> value
   if (m.all) check_configurations(context);
   if (references) check_references(context);
   if (gains) check_gains(context);
+  if (gains) check_torque_loops(context);
   check_force_feedback(context);
   check_planners(context);
   core::Diagnostics diagnostics;

@@ -42,6 +42,8 @@ void check_force_feedback(PhysicsContext& context);
 void check_feed_forward(PhysicsContext& context);
 // Gains that are unstable at the robot's rate (gain_stability.cc).
 void check_gains(PhysicsContext& context);
+// Torque loops that are unstable or not passive (check/actuators/torque_loops.cc).
+void check_torque_loops(PhysicsContext& context);
 // Step-to-step maps of the planners (planner_stability.cc).
 void check_planners(PhysicsContext& context);
 // Values over the ranges of live parameters, each with the others at their values

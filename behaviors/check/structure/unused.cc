@@ -106,6 +106,7 @@ void check_torque_loops(LoadContext& context) {
   if (tables == nullptr) return;
   for (const core::YamlEntry& entry : tables->entries) {
     const auto& used = context.used_torque_loops;
+    if (entry.key == "ranges") continue;
     if (std::find(used.begin(), used.end(), entry.key) != used.end()) continue;
     context.warning(entry.key_mark, "unused",
                     fmt::format("torque_loop table '{}' is never used{}", entry.key,

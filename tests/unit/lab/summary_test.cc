@@ -67,7 +67,7 @@ TEST(Summary, TellsOfATorqueLoopThatTheBackendDoesNotUse) {
   StubRig rig(R"(
 behavior: 1
 robot: hume
-torque_loop: {stance: {p: 1}, swing: {d: 10 ms}}
+torque_loop: {stance: {p: 1}, swing: {type: direct, d: 10 Nm s/rad}}
 machine:
   states:
     both: {contacts: [], torque_loop: {right_leg: stance, left_leg: stance}, after: 1 s, to: one}

@@ -154,7 +154,7 @@ TEST(LoaderControl, TorqueLoopsAreCheckedAndStored) {
   ASSERT_TRUE(b);
   ASSERT_EQ(b->torque_loops.size(), 2u);
   const auto hip = static_cast<std::size_t>(b->robot.find_joint("left_hip"));
-  EXPECT_EQ(b->torque_loops[1].p[hip], 32.7);
+  EXPECT_EQ(b->values[static_cast<std::size_t>(b->torque_loops[1].slots[0]) + hip], 32.7);
   EXPECT_EQ(b->controls[0].torque_loops[hip], 0);  // rise: stance
   EXPECT_EQ(
       problems("behavior: 1\nrobot: hume\ntorque_loop: {st: {p: {\"*hop\": 1}}}\nmachine: "

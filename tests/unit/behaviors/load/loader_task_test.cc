@@ -219,7 +219,8 @@ TEST(LoaderTask, TorqueLoopsGoByExactNameThenByGlobAndOnceAJoint) {
       "behavior: 1\nrobot: hume\n"
       "torque_loop: {t: {p: {\"*\": 1, left_hip: 2}}}\nmachine: {}\n");
   const auto joint = [&](const char* name) {
-    return b->torque_loops[0].p[static_cast<std::size_t>(b->robot.find_joint(name))];
+    return b
+        ->values[static_cast<std::size_t>(b->torque_loops[0].slots[0] + b->robot.find_joint(name))];
   };
   EXPECT_EQ(joint("left_hip"), 2.0);
   EXPECT_EQ(joint("right_hip"), 1.0);

@@ -165,6 +165,8 @@ TEST(UnitsTest, TheTextOfAUnitReadsBackAsTheSameDimension) {
   EXPECT_EQ(unit_text(kAcceleration), "m/s^2");
   EXPECT_EQ(unit_text(kTorque), "Nm");
   EXPECT_EQ(unit_text(kRate), "1/s");
+  EXPECT_EQ(unit_text(kRate / kTorque), "rad/s/Nm");  // of a cascaded torque loop
+  EXPECT_EQ(unit_text(kRateSquared / kTorque), "rad/s^2/Nm");
 }
 
 }  // namespace
