@@ -14,6 +14,7 @@ struct TorqueLoopGains {
   double forward = 1.0, damping = 0.0;        // direct
   double observer = 0.0;                      // direct: w/2π, Hz; 0: none
   Damping damps = Damping::motor;
+  bool operator==(const TorqueLoopGains&) const = default;
 };
 
 }  // namespace footfall::hal

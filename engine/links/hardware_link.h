@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "behaviors/machine/machine.h"
 #include "hal/hardware.h"
@@ -11,16 +12,23 @@ namespace footfall::engine {
 
 class HardwareLink {
  public:
-  HardwareLink(const behaviors::Behavior& behavior, hal::Hardware& hardware)
-      : behavior_(behavior), hardware_(hardware) {}
+  HardwareLink(const behaviors::Behavior& behavior, hal::Hardware& hardware);
 
   // Before the tick's write().
   void tell(const behaviors::Machine& machine) noexcept;
+  // The hardware may have been told something else meanwhile, by another loop.
+  void forget() noexcept;
 
  private:
+  void tell_support(int control) noexcept;
+  void tell_gains(const behaviors::Machine& machine) noexcept;
+
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
-  int control_ = -1;  // index of the law that was told; -1: none yet
+  bool has_loops_;                          // of gains that a behavior sets
+  int control_ = -1;                        // index of the law that was told; -1: none yet
+  std::vector<hal::TorqueLoopGains> told_;  // by joint
+  bool told_gains_ = false;
 };
 
 }  // namespace footfall::engine

@@ -36,6 +36,7 @@ void ControlLoop::take_over(ControlLoop& old, const behaviors::TakeOverMap& map,
   machine_->take_over(*old.machine_, map);
   controller_.take_over(old.controller_, map.instances);
   outside_.take_over(old.outside_, *machine_);
+  link_.forget();
 }
 
 }  // namespace footfall::engine
