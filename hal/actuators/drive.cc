@@ -18,6 +18,10 @@ double counted(double angle, double resolution) noexcept {
 
 }  // namespace
 
+double filter_share(double cutoff, double step) noexcept {
+  return -std::expm1(-2.0 * std::numbers::pi * cutoff * step);
+}
+
 SeriesElasticDrive::SeriesElasticDrive(DriveSettings settings) : settings_(std::move(settings)) {
   if (settings_.steps < 1 || settings_.command_delay < 0 || settings_.measurement_delay < 0) {
     throw std::invalid_argument("series-elastic drive: steps and delays cannot be negative");
@@ -34,9 +38,8 @@ SeriesElasticDrive::SeriesElasticDrive(DriveSettings settings) : settings_(std::
   commands_ = make(settings_.command_delay, 1);
   measurements_ = make(settings_.measurement_delay, kMeasured);
   commanded_.assign(joints_.size(), 0.0);
-  if (settings_.rate_cutoff > 0.0) {
-    smoothing_ = 1.0 - std::exp(-2.0 * std::numbers::pi * settings_.rate_cutoff * settings_.step);
-  }
+  motor_share_ = filter_share(settings_.filters.motor, settings_.step);
+  spring_share_ = filter_share(settings_.filters.spring, settings_.step);
 }
 
 void SeriesElasticDrive::start(std::span<const double> angles, std::span<const double> torques) {
@@ -93,16 +96,11 @@ TorqueLoopInput SeriesElasticDrive::sense(Joint& joint, double joint_rate) const
   const SeriesElasticState& state = joint.actuator.state();
   const double stretched = counted(state.deflection, settings_.deflection_resolution);
   const double angle = counted(joint.motor_angle, settings_.motor_resolution);
-  if (settings_.rate_cutoff > 0.0) {
-    const auto follow = [this](double& rate, double now, double before) {
-      rate += smoothing_ * ((now - before) / settings_.step - rate);
-    };
-    follow(joint.rate, angle, joint.counted);
-    follow(joint.spring_rate, stretched, joint.stretched);
-  } else {
-    joint.rate = state.rate;
-    joint.spring_rate = state.rate - joint_rate;
-  }
+  const auto follow = [this](double& rate, double share, double now, double before, double exact) {
+    rate = share > 0.0 ? rate + share * ((now - before) / settings_.step - rate) : exact;
+  };
+  follow(joint.rate, motor_share_, angle, joint.counted, state.rate);
+  follow(joint.spring_rate, spring_share_, stretched, joint.stretched, state.rate - joint_rate);
   joint.counted = angle;
   joint.stretched = stretched;
   return {joint.reference, joint.nominal_spring * stretched, joint.rate, joint.spring_rate};

@@ -18,6 +18,14 @@ struct DriveJoint {
   TorqueLoopGains gains;        // at the start
 };
 
+// How the loops get rates from encoders: differences of their counts, first-order filtered.
+// Cutoffs in Hz; infinite: unfiltered differences; 0: the exact rates, for tests of the rest.
+struct RateFilters {
+  double motor = 0.0, spring = 0.0;
+};
+// The part of a new difference that a filter takes over in a step, (0, 1]; 0: of exact rates.
+double filter_share(double cutoff, double step) noexcept;
+
 struct DriveSettings {
   std::vector<DriveJoint> joints;
   double step = 0.0;          // s, of the torque loops and the rotors
@@ -26,8 +34,7 @@ struct DriveSettings {
   int measurement_delay = 0;  // steps, from the encoders to measured()
   // Resolution of the encoders, rad; 0: exact.
   double motor_resolution = 0.0, deflection_resolution = 0.0;
-  // Hz, of the rates of motor and spring from these, first order; 0: exact rates.
-  double rate_cutoff = 0.0;
+  RateFilters filters;
 };
 
 // What the servo gets to know of a joint, after the measurement's delay.
@@ -93,8 +100,8 @@ class SeriesElasticDrive {
   std::vector<Joint> joints_;
   std::vector<double> commanded_;
   Delay commands_, measurements_;
-  double smoothing_ = 1.0;  // of the rates, by step
-  int unsampled_ = 0;       // steps since the last sample()
+  double motor_share_ = 0.0, spring_share_ = 0.0;  // filter_share()
+  int unsampled_ = 0;                              // steps since the last sample()
 };
 
 }  // namespace footfall::hal

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,7 +12,7 @@
 #include "core/diagnostics/diagnostics.h"
 #include "core/fault.h"
 #include "core/yaml/yaml.h"
-#include "hal/torque_loop_gains.h"
+#include "hal/actuators/drive.h"
 
 namespace footfall::model {
 
@@ -32,8 +33,9 @@ struct JointDescription {
 
 // The drives between commands and joints, where the joints have series-elastic actuators.
 struct DriveDescription {
-  double rate = 12'000.0;        // Hz, of the torque loops
-  double velocity_filter = 0.0;  // Hz, of the motor rate from its encoder; 0: none
+  static constexpr double kUnfiltered = std::numeric_limits<double>::infinity();
+  double rate = 12'000.0;  // Hz, of the torque loops
+  hal::RateFilters filters{kUnfiltered, kUnfiltered};
   // Gains at the start, by joint; empty: the robot does not tell.
   std::vector<hal::TorqueLoopGains> torque_loop;
   core::Mark mark;  // of the section

@@ -94,7 +94,8 @@ void read_drives(const YamlNode& node, RobotDescription& robot, Diagnostics& dia
   if (!core::expect_map(node, "{torque_loop: {...}}", diagnostics)) return;
   core::check_keys(node, kDrivesKeys, diagnostics);
   read_positive(node, "rate", core::kRate, drives.rate, diagnostics);
-  read_positive(node, "velocity_filter", core::kRate, drives.velocity_filter, diagnostics);
+  read_positive(node, "motor_filter", core::kRate, drives.filters.motor, diagnostics);
+  read_positive(node, "spring_filter", core::kRate, drives.filters.spring, diagnostics);
   if (const YamlNode* loop = core::require_key(node, "torque_loop", diagnostics)) {
     read_torque_loop(*loop, robot, diagnostics);
   }

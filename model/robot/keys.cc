@@ -63,8 +63,11 @@ constexpr KeySpec kSeaRows[] = {
 constexpr KeySpec kDrivesRows[] = {
     key("rate", quantity(kRate, "a rate in Hz"), "of the torque loops; a multiple of the physics'")
         .otherwise("12 kHz"),
-    key("velocity_filter", quantity(kRate, "a frequency in Hz"),
+    key("motor_filter", quantity(kRate, "a frequency in Hz"),
         "cutoff of the motor's velocity from its encoder, first order")
+        .otherwise("none"),
+    key("spring_filter", quantity(kRate, "a frequency in Hz"),
+        "the same of the rate of the spring's deflection")
         .otherwise("none"),
     key("torque_loop", map_of(kTorqueLoopKeys),
         "gains at the start; keys of the other type are what a behavior's table of that type does "

@@ -165,7 +165,7 @@ hal::DriveSettings drive_settings(const ActuatorSettings& actuators,
   settings.measurement_delay = steps(actuators.measurement_delay);
   settings.motor_resolution = actuators.motor_resolution;
   settings.deflection_resolution = actuators.deflection_resolution;
-  settings.rate_cutoff = robot.drives.velocity_filter;
+  settings.filters = robot.drives.filters;
   return settings;
 }
 

@@ -58,13 +58,14 @@ struct Found {
 // One joint's loop with the gains of a table.
 class JointLoop {
  public:
-  JointLoop(const model::JointDescription& joint, const TorqueLoopGains& gains, double period)
-      : actuator_{.spring = joint.spring, .rotor = joint.rotor}, gains_(gains), period_(period) {}
+  JointLoop(const model::JointDescription& joint, const model::DriveDescription& drives,
+            const TorqueLoopGains& gains)
+      : actuator_{.spring = joint.spring, .rotor = joint.rotor}, drives_(drives), gains_(gains) {}
 
   const TorqueLoopGains& gains() const { return gains_; }
   bool is_cascade() const { return gains_.type == TorqueLoopGains::Type::cascade; }
   double growth(const TorqueLoopGains& gains) const {
-    return torque_loop_growth(gains, actuator_, period_);
+    return torque_loop_growth(gains, actuator_, 1.0 / drives_.rate, drives_.filters);
   }
   bool is_stable(const TorqueLoopGains& gains) const {
     return growth(gains) <= 1.0 + kGrowthRounding;
@@ -172,7 +173,7 @@ class JointLoop {
 
   hal::SeriesElasticParameters actuator_;
   TorqueLoopGains gains_;
-  double period_;
+  const model::DriveDescription& drives_;
 };
 
 class TorqueLoopCheck {
@@ -215,7 +216,7 @@ class TorqueLoopCheck {
     }
     const TorqueLoopGains gains = torque_loop_gains(b(), index, joint, b().values);
     if (is_unknown(table, gains)) return;
-    const JointLoop loop(description, gains, period_);
+    const JointLoop loop(description, context_.behavior.robot.drives, gains);
     if (find_unstable(table, joint, loop, Severity::error, "")) return;
     const bool passive = !find_active(table, joint, loop, "");
     for (std::size_t k = 0; k < table.slots.size(); ++k) {
@@ -225,7 +226,7 @@ class TorqueLoopCheck {
       for (const double end : {info.min, info.max}) {
         TorqueLoopGains edited = gains;
         edited.*model::kTorqueLoopGainKeys[k].member = end;
-        const JointLoop at_end(description, edited, period_);
+        const JointLoop at_end(description, context_.behavior.robot.drives, edited);
         const std::string where = fmt::format(" at the end of the range of '{}'", info.name);
         if (!find_unstable(table, joint, at_end, Severity::warning, where) && passive) {
           find_active(table, joint, at_end, where);

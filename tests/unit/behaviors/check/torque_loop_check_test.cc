@@ -24,14 +24,15 @@ constexpr double kStep = 1.0 / 12000.0;                                         
 constexpr hal::SeriesElasticParameters kHip{.spring = 360, .rotor = 0.0872756};  // Hume's right hip
 
 // Whether an error grows: 1, decays: -1, or neither within the time given: 0.
-int stepped(const TorqueLoopGains& gains, int steps) {
+int stepped(const TorqueLoopGains& gains, const hal::RateFilters& filters, int steps) {
   hal::DriveSettings settings;
   settings.joints = {{kHip, kHip.spring, gains}};
   settings.step = kStep;
+  settings.filters = filters;
   hal::SeriesElasticDrive drive(settings);
   const std::array<double, 1> start{1.0}, zero{0.0};
   std::array<double, 1> out{};
-  drive.start(start);
+  drive.start(zero, start);
   drive.command(zero);
   const double energy = drive.actuator(0).energy();
   for (int k = 0; k < steps; ++k) {
@@ -55,9 +56,13 @@ TEST(SampledTorqueLoop, GrowsExactlyWhereTheDriveDoes) {
     gains.velocity_p = draw(1.0, 3000.0);
     gains.velocity_i = k % 5 == 0 ? 0.0 : draw(1.0, 3000.0);
     gains.damping = draw(1.0, 3000.0);
-    const double growth = torque_loop_growth(gains, kHip, kStep);
+    gains.observer = k % 7 == 0 ? draw(1.0, 60.0) : 0.0;
+    gains.damps = k % 8 < 4 ? TorqueLoopGains::Damping::motor : TorqueLoopGains::Damping::spring;
+    const hal::RateFilters filters{k % 4 < 2 ? draw(100.0, 1000.0) : 0.0,
+                                   k % 3 == 0 ? HUGE_VAL : draw(100.0, 1000.0)};
+    const double growth = torque_loop_growth(gains, kHip, kStep, filters);
     if (std::abs(growth - 1.0) < 1e-3) continue;  // too slow to wait for
-    const int seen = stepped(gains, 30000);
+    const int seen = stepped(gains, filters, 30000);
     EXPECT_EQ(seen, growth > 1.0 ? 1 : -1) << k << ": " << growth;
     ++(growth > 1.0 ? grown : decayed);
   }
