@@ -1,5 +1,6 @@
 // A whole run with its log against a bare mj_step loop over the same physics steps, same process.
 // The rounds alternate; the lowest of each counts. Prints {"ratio", "real_time_factor", ...}.
+// bench_run_cost [BEHAVIOR [WORLD]]: a world of sim/worlds, in which the bare loop is as in `flat`.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "engine/log/writer.h"
 #include "lab/run/run.h"
 #include "lab/run/run_log.h"
+#include "tests/support/allocation_guard.h"
 #include "tests/support/rig.h"
 
 namespace footfall {
@@ -51,8 +53,9 @@ double bare_loop(const char* name, const std::vector<std::array<double, 6>>& tor
   return seconds(start);
 }
 
-double whole_run(const char* name, const std::string& log_path) {
-  tests::Rig rig(name);
+double whole_run(const char* name, const sim::WorldDescription& world,
+                 const std::string& log_path) {
+  tests::Rig rig(name, world);
   engine::LogWriter log(log_path, rig.behavior->signals, lab::make_log_header(*rig.behavior, {}));
   lab::RunSpec spec;
   spec.max_time = kSimulated;
@@ -63,20 +66,38 @@ double whole_run(const char* name, const std::string& log_path) {
   return seconds(start);
 }
 
-int run(const char* name) {
+// Heap calls in a second of ticks, after one.
+long allocations_in(const char* name, const sim::WorldDescription& world) {
+  tests::Rig rig(name, world);
+  rig.loop->start();
+  while (rig.loop->time() < 1.0) rig.loop->tick();
+  const tests::AllocationGuard guard;
+  while (rig.loop->time() < 2.0) rig.loop->tick();
+  return guard.allocations();
+}
+
+sim::WorldDescription world_of(const std::string& name) {
+  core::Diagnostics problems;
+  return sim::load_world(std::string(FOOTFALL_SOURCE_DIR) + "/sim/worlds/" + name + ".yaml",
+                         problems);
+}
+
+int run(const char* name, const std::string& world_name) {
+  const sim::WorldDescription world = world_of(world_name);
   const auto torques = record(name);
   const std::string log =
       (std::filesystem::temp_directory_path() / "footfall_bench_run_cost.mcap").string();
   double bare = 1e9, whole = 1e9;
   for (int round = 0; round < kRounds; ++round) {
     bare = std::min(bare, bare_loop(name, torques));
-    whole = std::min(whole, whole_run(name, log));
+    whole = std::min(whole, whole_run(name, world, log));
   }
   std::filesystem::remove(log);
   const nlohmann::ordered_json out = {{"ratio", whole / bare},
                                       {"real_time_factor", kSimulated / whole},
                                       {"bare_s", bare},
                                       {"run_s", whole},
+                                      {"allocations", allocations_in(name, world)},
                                       {"ticks", torques.size()}};
   std::printf("%s\n", out.dump().c_str());
   return 0;
@@ -85,4 +106,6 @@ int run(const char* name) {
 }  // namespace
 }  // namespace footfall
 
-int main(int argc, char** argv) { return footfall::run(argc > 1 ? argv[1] : "balance"); }
+int main(int argc, char** argv) {
+  return footfall::run(argc > 1 ? argv[1] : "balance", argc > 2 ? argv[2] : "flat");
+}

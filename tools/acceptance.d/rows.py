@@ -103,6 +103,22 @@ def bench(name, *arguments, timeout=600):
         give_up(f"{name}: {problem}")
 
 
+def unit(program, test, timeout=600):
+    """Runs one test of a program of tests/unit; returns (passed, its recorded properties)."""
+    path = BUILD / "tests" / "unit" / program
+    if not path.exists():
+        give_up(f"{path} is not built")
+    with scratch() as folder:
+        report = Path(folder) / "report.json"
+        subprocess.run([str(path), f"--gtest_filter={test}", f"--gtest_output=json:{report}"], cwd=ROOT,
+                       stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout)
+        suites = json.loads(report.read_text())["testsuites"]
+    if len(suites) != 1 or len(suites[0]["testsuite"]) != 1:
+        give_up(f"{program} has no test {test}")
+    case = suites[0]["testsuite"][0]
+    return "failures" not in case, case
+
+
 def pick(figures, *path):
     """figures[path[0]][path[1]]..., or exits with a clear message."""
     for key in path:

@@ -48,19 +48,23 @@ class RandomLoops {
 // Re a is c0 + c2/w^2: the sweep's ends, where one of the two is all, are far beyond both corners.
 TEST(Passivity, TheClosedFormAgreesWithASweepOfTheFrequency) {
   RandomLoops loops(5);
-  int judged = 0, passive = 0;
-  while (judged < 1000) {
+  int judged = 0, passive = 0, disagreed = 0;
+  while (judged < 1250) {
     const auto actuator = loops.actuator(judged % 2 == 0);
-    const auto gains = judged % 4 < 3 ? loops.cascade() : loops.direct();
+    // 1000 cascades, and 250 direct loops between them.
+    const auto gains = judged % 5 < 4 ? loops.cascade() : loops.direct();
     const double margin = hal::passivity_margin(gains, actuator);
     if (std::abs(margin) < 0.01) continue;  // at equality
     ++judged;
     passive += margin > 0.0;
     const double least = hal::least_admittance(gains, actuator, 0.0, 1e-5, 1e7, 2000);
     EXPECT_EQ(margin > 0.0, least > 0.0) << "margin " << margin << ", Re a " << least;
+    disagreed += (margin > 0.0) != (least > 0.0);
   }
+  RecordProperty("judged", judged);
+  RecordProperty("disagreed", disagreed);
   EXPECT_GT(passive, 250);
-  EXPECT_LT(passive, 750);
+  EXPECT_LT(passive, 1000);
 }
 
 TEST(Passivity, ProportionalLoopsArePassiveWithoutDelayAndNotWithIt) {
@@ -102,6 +106,7 @@ TEST(Passivity, OnlyWhatIsNotPassiveGivesEnergyToAMovingOutput) {
     agreed += (most_energy_given(gains, actuator) > 1e-3) == (margin < 0.0);
   }
   EXPECT_GE(agreed, 48);
+  RecordProperty("agreed", agreed);
 }
 
 }  // namespace

@@ -103,6 +103,7 @@ TEST(SeriesElastic, EnergyIsBalancedOverRandomTrajectories) {
     worst = std::max(worst, balance(random_parameters(random, trial % 2 == 0), random));
   }
   EXPECT_LT(worst, 1e-3);
+  RecordProperty("worst_ppb", std::to_string(1e9 * worst));
 }
 
 TEST(SeriesElastic, TheMeanSpringTorqueIsTheImpulseOnTheJoint) {
