@@ -69,6 +69,7 @@ void add_robot(const model::RobotDescription& robot, core::SignalTable& table,
     table.add(name + ".velocity", core::kRate, "joint velocity");
     table.add(name + ".torque", core::kTorque, "measured joint torque");
     table.add(name + ".command", core::kTorque, "commanded joint torque");
+    table.add(name + ".motor", core::kTorque, "motor torque of a series-elastic actuator, else 0");
   }
 }
 
@@ -144,6 +145,8 @@ SignalLayout register_signals(const model::RobotDescription& robot,
   layout.state = table.add("state", core::kNone, "index of the first active atomic state");
   layout.transition_weight =
       table.add("transition.weight", core::kNone, "weight of the second control law, 0 to 1");
+  layout.motor_saturated = table.add("motor.saturated", core::kNone,
+                                     "1 while a motor gives less than its torque loop asks for");
   layout.torque_step =
       table.add("torque.step", core::kTorque, "largest torque step of a joint between two ticks");
   layout.faults = table.add("faults", core::kNone, "faults counted so far");

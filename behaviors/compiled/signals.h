@@ -66,13 +66,14 @@ struct SignalLayout {
   std::vector<int> force;        // force.NAME.{x,y,z}: measured, ground on robot, N, world
   std::vector<int> force_cmd;    // force_cmd.NAME.{x,y,z}: predicted by the control law
   std::vector<int> point;        // point.NAME.{x,y,z}: contacts first, then points; m, world
-  std::vector<int> joint;        // joint.NAME.{position,velocity,torque,command}: 4 in a row
+  std::vector<int> joint;        // joint.NAME.{position,velocity,torque,command,motor}
   std::vector<TaskSignals> task;
   std::vector<InternalSignals> internal;
   std::vector<PlannerSignals> planner;
   int steps = -1;              // steps counted by the behavior's marks
   int state = -1;              // index of the first active atomic state in document order
   int transition_weight = -1;  // of the second control law, 0..1
+  int motor_saturated = -1;    // 0 or 1
   int torque_step = -1;        // largest |tau - tau_previous| over joints, N m
   int faults = -1;             // faults counted so far
   int tick_late = -1;          // ticks so far that began late

@@ -79,6 +79,7 @@ void SignalWriter::write_measured(double time, const model::ControlModel& model,
     signals_[layout.contact[c]] = sensors.contact[c] ? 1.0 : 0.0;
     put(signals_, layout.force[c], sensors.force[c]);
   }
+  signals_[layout.motor_saturated] = sensors.motor_saturated ? 1.0 : 0.0;
   for (std::size_t p = 0; p < layout.point.size(); ++p) {
     put(signals_, layout.point[p], model.point_position(static_cast<int>(p)));
   }
@@ -86,6 +87,7 @@ void SignalWriter::write_measured(double time, const model::ControlModel& model,
     signals_[layout.joint[j]] = s.q[j];
     signals_[layout.joint[j] + 1] = s.qd[j];
     signals_[layout.joint[j] + 2] = sensors.tau[j];
+    signals_[layout.joint[j] + 4] = sensors.motor_torque[j];
   }
 }
 

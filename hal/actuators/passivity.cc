@@ -30,6 +30,34 @@ std::complex<double> output_admittance(const TorqueLoopGains& gains,
   return (1.0 + late * of_torque) / (rotor + late * of_rate);
 }
 
+std::complex<double> locked_response(const TorqueLoopGains& gains,
+                                     const SeriesElasticParameters& actuator,
+                                     std::complex<double> s) {
+  const std::complex<double> outer = gains.p + gains.i / s;
+  const std::complex<double> rotor =
+      (actuator.rotor * s + actuator.viscous) * s / actuator.spring + 1.0;
+  const std::complex<double> turn = s / actuator.spring;  // of θ' = q' + τ_s'/k by τ_s
+  if (gains.type == TorqueLoopGains::Type::cascade) {
+    const std::complex<double> inner = gains.velocity_p + gains.velocity_i / s;
+    return inner * outer / (rotor + inner * (outer + turn));
+  }
+  const double w = 2.0 * std::numbers::pi * gains.observer;
+  const std::complex<double> share = 1.0 + w / s;
+  const std::complex<double> found = w / s * (actuator.rotor * s * turn + 1.0);
+  return share * (gains.forward + outer) / (rotor + share * (outer + gains.damping * turn) + found);
+}
+
+double loop_bandwidth(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator) {
+  constexpr double kFrom = 0.1, kTo = 1000.0, kRatio = 1.005;  // Hz
+  const auto size = [&](double hertz) {
+    return std::abs(locked_response(gains, actuator, {0.0, 2.0 * std::numbers::pi * hertz}));
+  };
+  const double least = size(kFrom) / std::numbers::sqrt2;
+  double hertz = kFrom;
+  while (hertz < kTo && size(hertz) > least) hertz *= kRatio;
+  return std::min(hertz, kTo);
+}
+
 double passivity_margin(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator) {
   const double j = actuator.rotor, b = actuator.viscous;
   const auto relative = [](double good, double bad) {

@@ -2,8 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
+#include "core/text/escape.h"
+#include "core/text/json_text.h"
 #include "lab/report/sections.h"
 
 namespace footfall::lab {
@@ -146,6 +150,76 @@ Section torque_section(const Log& log) {
   TimePlot step{"torque-step", "Largest torque step between neighbouring ticks", "N m", {}, false};
   add_curve(log, step, "torque step", "c3", "torque.step");
   keep(section, std::move(step));
+  return section;
+}
+
+namespace {
+
+// rms of command minus measured torque, and the largest motor torque, N m.
+std::string joint_figures(const Log& log, const std::string& joint) {
+  const auto* torque = log.values("joint." + joint + ".torque");
+  const auto* command = log.values("joint." + joint + ".command");
+  const auto* motor = log.values("joint." + joint + ".motor");
+  if (torque == nullptr || command == nullptr || motor == nullptr || torque->empty()) return "";
+  double squared = 0.0, most = 0.0;
+  for (std::size_t k = 0; k < torque->size(); ++k) {
+    const double error = static_cast<double>((*command)[k]) - static_cast<double>((*torque)[k]);
+    squared += error * error;
+    most = std::max(most, std::abs(static_cast<double>((*motor)[k])));
+  }
+  return fmt::format("<td>{:.2f} N m</td><td>{:.0f} N m</td>",
+                     std::sqrt(squared / static_cast<double>(torque->size())), most);
+}
+
+std::string loop_table(const Log& log, const nlohmann::json& loops) {
+  std::string out =
+      "<table class=\"keys\"><tr><th>joint</th><th>gains</th><th>bandwidth, output locked</th>"
+      "<th>passivity margin</th><th>torque error, rms</th><th>motor, peak</th></tr>";
+  std::string before;
+  for (const auto& loop : loops) {
+    const std::string joint = loop.value("joint", "");
+    const double margin = loop.value("passivity_margin", 0.0);
+    out += fmt::format("<tr><td>{}</td><td>{} ({})</td><td>{:.1f} Hz</td><td>{:.2f}{}</td>{}</tr>",
+                       core::escape_html(spaced(joint)), core::escape_html(loop.value("table", "")),
+                       core::escape_html(loop.value("type", "")), loop.value("bandwidth_Hz", 0.0),
+                       margin, margin < 0.0 ? ", not passive" : "",
+                       joint == before ? "<td></td><td></td>" : joint_figures(log, joint));
+    before = joint;
+  }
+  return out + "</table>";
+}
+
+}  // namespace
+
+Section actuator_section(const Log& log) {
+  Section section{"actuators", "Actuators", "", "", {}, {}};
+  const auto found = log.run.find("actuators");
+  if (found == log.run.end()) return section;
+  const nlohmann::json loops = core::parse_json(found->second);
+  if (!loops.is_array()) return section;
+  section.lead =
+      "Series-elastic actuators: the motor's torque beside the spring's, which acts on the joint. "
+      "Bandwidth and "
+      "passivity are those of the gains at the start, with the nominal spring and without friction "
+      "and delay.";
+  if (const auto* saturated = log.values("motor.saturated"); saturated && !saturated->empty()) {
+    const auto rows = std::ranges::count_if(*saturated, [](float value) { return value > 0.5F; });
+    section.lead +=
+        fmt::format(" A motor was at its limit in {:.3g} % of the rows.",
+                    100.0 * static_cast<double>(rows) / static_cast<double>(saturated->size()));
+  }
+  section.html = loop_table(log, loops);
+  std::string before;
+  for (const auto& loop : loops) {
+    const std::string joint = loop.value("joint", "");
+    if (joint == before) continue;
+    before = joint;
+    TimePlot plot{"actuator-" + joint, "Last four steps, " + spaced(joint), "N m", {}, true};
+    add_curve(log, plot, "commanded", "c3", "joint." + joint + ".command", true);
+    add_curve(log, plot, "spring, measured", "c1", "joint." + joint + ".torque");
+    add_curve(log, plot, "motor", "c2", "joint." + joint + ".motor");
+    keep(section, std::move(plot));
+  }
   return section;
 }
 

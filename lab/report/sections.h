@@ -26,6 +26,8 @@ Section phase_section(const Log& log);
 Section task_section(const Log& log);
 Section posture_section(const Log& log);
 Section torque_section(const Log& log);
+// Empty unless the run had series-elastic actuators.
+Section actuator_section(const Log& log);
 Section force_section(const Log& log);
 Section planner_section(const Log& log, const nlohmann::json& summary);
 Section event_section(const Log& log);

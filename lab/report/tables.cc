@@ -226,7 +226,7 @@ std::string summary_html(const Log& log, const json& summary) {
 std::string settings_html(const Log& log) {
   std::string out = "<table class=\"keys\">";
   for (const auto& [key, value] : log.run) {
-    if (key == "states" || key == "tasks") continue;
+    if (key == "states" || key == "tasks" || key == "actuators") continue;
     const bool fits = value.size() <= kMaxSetting;
     out += fmt::format("<tr><th>{}</th><td>{}{}</td></tr>", escape_html(key),
                        escape_html(value.substr(0, kMaxSetting)), fits ? "" : "…");

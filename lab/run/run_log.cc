@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/text/json_text.h"
 #include "core/text/printable.h"
+#include "lab/run/actuator_facts.h"
 #include "lab/run/end.h"
 #include "lab/run/log_setup.h"
 #include "lab/run/version.h"
@@ -216,6 +217,9 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
                 {"joints", core::json_text(header.joints)}};
   if (source.friction > 0.0) {
     header.run.emplace_back("friction", fmt::format("{:g}", source.friction));
+  }
+  if (source.elastic) {
+    header.run.emplace_back("actuators", core::json_text(actuator_facts(behavior)));
   }
   header.setup = setup_text(behavior, source);
   header.events = behavior.events;

@@ -65,6 +65,7 @@ struct LogSource {
   std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE
   std::string command;                                   // as it was typed, for people
   double friction = 0.0;                                 // of the ground; 0: unknown
+  bool elastic = false;                                  // series-elastic actuators
   int row_every = 6;                                     // ticks; 1: derived signals of all ticks
 };
 
