@@ -32,9 +32,8 @@ struct SampledPlant {
 // Throws std::invalid_argument for torque loops beyond those above.
 double sampled_growth(const SampledPlant& plant, const SampledLaw& law);
 
-// The largest scale of kp on `row` between 0 and `most` up to which every scale is stable, by
-// bisection from the least one that is not on a grid of ratio 1.05 from `most`/1e4 on; 0: none is,
-// `most`: all are. The value of kp, not a factor.
+// The largest kp of `row`, up to `most`, below which every kp is stable: the first that is not is
+// sought on a grid of ratio 1.05 from most/1e4 on, then halved to 0.1 %. 0: none is stable.
 double largest_stable_kp(const SampledPlant& plant, SampledLaw law, int row, double most);
 
 }  // namespace footfall::tests

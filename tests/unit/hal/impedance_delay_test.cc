@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "hal/actuators/drive.h"
@@ -128,6 +129,15 @@ TEST(ImpedanceDelay, LateDampingHurtsMoreThanLateStiffness) {
   EXPECT_NEAR(longest_delay(is_stable_by_simulation, kp, true), late_damping, 1);
   EXPECT_NEAR(longest_delay(is_stable_by_simulation, kp, false), late_stiffness,
               0.15 * late_stiffness);
+}
+
+TEST(ImpedanceDelay, AModelRefusesTorqueLoopsThatItLacks) {
+  SampledPlant plant = knee_plant(20.0);
+  plant.drive.joints[0].gains = kCascade;
+  EXPECT_THROW(sampled_growth(plant, knee_law(100.0, 0, 0)), std::invalid_argument);
+  plant = knee_plant(20.0);
+  plant.drive.joints[0].gains.i = 1.0;
+  EXPECT_THROW(sampled_growth(plant, knee_law(100.0, 0, 0)), std::invalid_argument);
 }
 
 // 1 to 4 periods: the largest stiffness falls by a fifth with the first of damping, and with
