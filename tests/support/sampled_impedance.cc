@@ -115,19 +115,22 @@ class TickMap {
   // u = F τ_d + P (τ_d − k_nominal (θ − q)) − D r, r the filtered rate that the loop damps.
   void advance(MatrixXd& x, const MatrixXd& reference) const {
     const int m = at_.m;
-    const double h = plant_.drive.step, cutoff = plant_.drive.rate_cutoff;
-    const double share = cutoff > 0.0 ? 1.0 - std::exp(-2.0 * std::numbers::pi * cutoff * h) : 1.0;
+    const double h = plant_.drive.step;
+    const hal::RateFilters& filters = plant_.drive.filters;
     const MatrixXd motor = x.middleRows(at_.rotor(), m);
     const MatrixXd spring = motor - x.middleRows(at_.q() + at_.n - m, m);
     const MatrixXd motor_rate = x.middleRows(at_.rotor_rate(), m);
     const MatrixXd spring_rate = motor_rate - x.middleRows(at_.v() + at_.n - m, m);
-    const auto follow = [&](int filtered, int seen, const MatrixXd& now, const MatrixXd& exact) {
-      const MatrixXd slope = cutoff > 0.0 ? MatrixXd((now - x.middleRows(seen, m)) / h) : exact;
-      x.middleRows(filtered, m) += share * (slope - x.middleRows(filtered, m));
+    const auto follow = [&](double cutoff, int filtered, int seen, const MatrixXd& now,
+                            const MatrixXd& exact) {
+      const double share = hal::filter_share(cutoff, h);  // 0: the exact rate
+      const MatrixXd slope = share > 0.0 ? MatrixXd((now - x.middleRows(seen, m)) / h) : exact;
+      x.middleRows(filtered, m) +=
+          (share > 0.0 ? share : 1.0) * (slope - x.middleRows(filtered, m));
       x.middleRows(seen, m) = now;
     };
-    follow(at_.motor_filtered(), at_.motor_seen(), motor, motor_rate);
-    follow(at_.spring_filtered(), at_.spring_seen(), spring, spring_rate);
+    follow(filters.motor, at_.motor_filtered(), at_.motor_seen(), motor, motor_rate);
+    follow(filters.spring, at_.spring_filtered(), at_.spring_seen(), spring, spring_rate);
     MatrixXd u(m, x.cols());
     for (int j = 0; j < m; ++j) {
       const hal::DriveJoint& joint = plant_.drive.joints[static_cast<std::size_t>(j)];

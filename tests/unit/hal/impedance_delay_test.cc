@@ -36,7 +36,7 @@ SampledPlant knee_plant(double p) {
                           .damps = hal::TorqueLoopGains::Damping::spring}}};
   plant.drive.step = kLoopStep;
   plant.drive.steps = kDriveSteps;
-  plant.drive.rate_cutoff = 300.0;
+  plant.drive.filters = {300.0, 300.0};
   plant.steps_per_period = kDriveSteps * kPlantSteps;
   plant.drive.command_delay = plant.steps_per_period;
   return plant;
