@@ -31,7 +31,7 @@ int stepped(const TorqueLoopGains& gains, int steps) {
   hal::SeriesElasticDrive drive(settings);
   const std::array<double, 1> start{1.0}, zero{0.0};
   std::array<double, 1> out{};
-  drive.start(start);
+  drive.start(zero, start);
   drive.command(zero);
   const double energy = drive.actuator(0).energy();
   for (int k = 0; k < steps; ++k) {
