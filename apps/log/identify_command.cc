@@ -187,7 +187,9 @@ void add_identify_command(CLI::App& app, int& exit_code) {
   command->add_option("--joint", arguments->joints, "Only these: names or globs, e.g. \"*knee\"")
       ->delimiter(',');
   command->add_flag("--json", arguments->json, "One JSON object");
-  command->footer("Example: footfall run excite --world sea_hoist && footfall identify out/run");
+  command->footer(
+      "Example: footfall identify out/run --joint \"*knee\"\n"
+      "A log for it: footfall run excite --world sea_hoist");
   command->callback(
       [arguments, &exit_code] { exit_code = guarded([&] { return run_identify(*arguments); }); });
 }
