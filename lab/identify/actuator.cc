@@ -128,9 +128,9 @@ Matrix covariance_of(std::span<const Row> rows, const Matrix& inverse, const Vec
   return inverse * meat * inverse * (clusters / (clusters - kParameters));
 }
 
-// Under a torque loop that hunts between two counts the rounding of the deflection is not all
-// noise: a part of it follows the motion, and does not average out. Half of its rms value (N m,
-// `rounding`) counts as an error that has the sign of the deflection's rate, and of the motor's.
+// Allowance for what of the deflection's rounding does not average out under a torque loop: half of
+// its rms value (N m, `rounding`) with the sign of the deflection's rate, and with that of the
+// motor's. The half is empirical, see docs/identify.md.
 Matrix rounding_covariance(std::span<const Row> rows, const Matrix& inverse, double rounding) {
   Vector shift = Vector::Zero();
   for (const Row& row : rows) shift += row.weight * row.rising * row.regressors;
