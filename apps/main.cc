@@ -48,6 +48,7 @@ int run_command(int argc, char** argv) {
   footfall::apps::add_diff_command(app, exit_code);
   footfall::apps::add_why_command(app, exit_code);
   footfall::apps::add_export_command(app, exit_code);
+  footfall::apps::add_identify_command(app, exit_code);
   footfall::apps::add_tune_command(app, exit_code);
   try {
     footfall::apps::join_live_url(argc, argv);
