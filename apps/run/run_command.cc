@@ -163,7 +163,9 @@ int run_behavior(RunOptions options) {
         "--no-report");
   }
   require_film_name(options.film);
-  sim::WorldDescription declared = declared_world(options, load_world(options.world));
+  separate_world_settings(options);
+  sim::WorldDescription declared =
+      declared_world(options, load_world(options.world, {}, {}, options.world_set));
   const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;

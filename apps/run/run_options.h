@@ -36,7 +36,9 @@ struct RunOptions {
   bool quiet = false;
   bool realtime = false;
   LiveOptions live;
-  bool reload = false;             // reload a changed behavior file
+  bool reload = false;  // reload a changed behavior file
+  // Of --set: those of the world, without `world.`.
+  std::vector<std::pair<std::string, std::string>> world_set;
   std::vector<std::string> given;  // options given, e.g. `--seed`
   std::vector<std::string> allow;  // capabilities of scripts: files, processes
 };

@@ -47,8 +47,9 @@ CheckedScenario load_checked(const RunOptions& options) {
   if (!scenario.behavior->has_robot) {
     throw InputError(options.behavior + ": error: its behavior has no `robot:` and cannot be run");
   }
-  sim::WorldDescription world = load_world(scenario.world, scenario.world_from,
-                                           lab::place_in_file(scenario, scenario.world_mark));
+  sim::WorldDescription world =
+      load_world(scenario.world, scenario.world_from,
+                 lab::place_in_file(scenario, scenario.world_mark), options.world_set);
   world.variation = lab::variation_over(scenario, world.variation);
   world = declared_world(options, std::move(world));
   if (options.backend == "stub" && scenario.world_mark.line == 0) {
@@ -113,6 +114,7 @@ void write_results(const RunOptions& options, const lab::ScenarioDescription& sc
 
 int run_scenario_file(RunOptions options) {
   refuse_options(options);
+  separate_world_settings(options);
   const CheckedScenario checked = load_checked(options);
   const lab::ScenarioDescription& scenario = checked.scenario;
   const bool seed_given = std::ranges::find(options.given, "--seed") != options.given.end();

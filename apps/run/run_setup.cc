@@ -27,8 +27,25 @@ namespace footfall::apps {
 
 namespace fs = std::filesystem;
 
+void separate_world_settings(RunOptions& options) {
+  constexpr std::string_view kWorld = "world.";
+  std::vector<std::string> others;
+  for (const std::string& text : options.set) {
+    const std::size_t equals = text.find('=');
+    if (!text.starts_with(kWorld)) {
+      others.push_back(text);
+    } else if (equals == std::string::npos) {
+      throw InputError("--set " + text + ": error: expected NAME=VALUE");
+    } else {
+      options.world_set.emplace_back(text.substr(kWorld.size(), equals - kWorld.size()),
+                                     text.substr(equals + 1));
+    }
+  }
+  options.set = std::move(others);
+}
+
 sim::WorldDescription load_world(const std::string& name, const std::string& beside,
-                                 const std::string& place) {
+                                 const std::string& place, const sim::WorldSettings& settings) {
   core::Diagnostics diagnostics;
   std::string file;
   if (!beside.empty()) {
@@ -39,7 +56,7 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
   if (file.empty()) file = sim::find_world_file(name, folders);
   sim::WorldDescription world;
   if (file.empty()) {
-    if (name != "flat") {
+    if (name != "flat" || !settings.empty()) {
       throw InputError(
           fmt::format("{}: error: unknown world '{}': no such file, and no "
                       "sim/worlds/{}.yaml in the search path{}",
@@ -48,7 +65,7 @@ sim::WorldDescription load_world(const std::string& name, const std::string& bes
     }
     return world;
   }
-  world = sim::load_world(file, diagnostics, search_path());
+  world = sim::load_world(file, diagnostics, search_path(), settings);
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
   std::fputs(diagnostics.to_string().c_str(), stderr);
   if (diagnostics.has_errors()) throw InputError("");
@@ -250,6 +267,9 @@ std::string command_line(const RunOptions& options) {
   add("--for", options.duration_text);
   if (options.steps > 0) add("--steps", std::to_string(options.steps));
   for (const std::string& set : options.set) add("--set", set);
+  for (const auto& [key, value] : options.world_set) {
+    add("--set", fmt::format("world.{}={}", key, value));
+  }
   for (const std::string& push : options.pushes) add("--push", push);
   add("--goal", options.goal);
   add("--goal-velocity", options.goal_velocity);

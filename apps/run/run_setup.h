@@ -29,10 +29,16 @@ struct Backend {
   std::vector<std::string> constraints;  // names of the world's external aids
 };
 
-// Loads a world by name or path. `beside`: a file in whose folder it is searched first; `place`:
-// position of the reference, for messages. Prints problems and throws InputError.
+// Moves the settings of the world (`--set world.KEY=VALUE`) from `set` to `world_set`. Throws
+// InputError for one without a value.
+void separate_world_settings(RunOptions& options);
+
+// Loads a world by name or path, with `settings` over it. `beside`: a file in whose folder it is
+// searched first; `place`: position of the reference, for messages. Prints problems and throws
+// InputError.
 sim::WorldDescription load_world(const std::string& name, const std::string& beside = {},
-                                 const std::string& place = {});
+                                 const std::string& place = {},
+                                 const sim::WorldSettings& settings = {});
 // The world as a run declares it: without what is drawn if the options say so, hence judged with
 // what it uses.
 sim::WorldDescription declared_world(const RunOptions& options, sim::WorldDescription world);

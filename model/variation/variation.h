@@ -84,7 +84,8 @@ Variation read_variation(const core::YamlNode& node, const Variation& base,
 
 // Before the merge of a world or scenario over its base (core::YamlLayers): `off` stays as a value,
 // since what it takes away may come from elsewhere, such as a scenario's world; one kind of
-// distribution replaces the other; a `ground: {friction}` replaces the base's draw of it.
+// distribution replaces the other; a `ground: {friction}` or `actuators: {coulomb}` replaces the
+// base's draw of it.
 void prepare_variation(core::YamlNode& base, const core::YamlNode& own);
 
 struct DrawnPush {

@@ -100,10 +100,15 @@ struct WorldDescription {
 // Search folders for `base: NAME`: sim/worlds in each folder of `search`.
 std::vector<std::string> world_folders(const std::vector<std::string>& search);
 
-// Loads a world file. Problems are added to diagnostics; the result is valid only without errors.
-// `search`: folders of sim/worlds/NAME.yaml, after those of the file and above it.
+// Values over those of a world's file, by dotted key: {"actuators.coulomb", "2 Nm"}.
+using WorldSettings = std::vector<std::pair<std::string, std::string>>;
+
+// Loads a world file. Problems are added to diagnostics, those of a setting at `--set world.KEY`;
+// the result is valid only without errors. `search`: folders of sim/worlds/NAME.yaml, after those
+// of the file and above it. Settings are told by the world's name.
 WorldDescription load_world(const std::string& path, core::Diagnostics& diagnostics,
-                            const std::vector<std::string>& search = {});
+                            const std::vector<std::string>& search = {},
+                            const WorldSettings& settings = {});
 
 // The world of one run: friction, start, control model and delay as drawn.
 WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);
