@@ -9,6 +9,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/suites/sweep_setup.h"
+#include "behaviors/check/actuators/drives.h"
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/did_you_mean.h"
@@ -43,7 +44,9 @@ void check_fit(const model::RobotDescription& robot, core::Diagnostics& diagnost
 
 void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
   const model::RobotDescription robot = model::load_robot(path, diagnostics);
-  if (!diagnostics.has_errors()) check_fit(robot, diagnostics);
+  if (diagnostics.has_errors()) return;
+  check_fit(robot, diagnostics);
+  behaviors::check_drives(robot, diagnostics);
 }
 
 void check_world(const std::string& path, core::Diagnostics& diagnostics) {

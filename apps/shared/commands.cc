@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <new>
 
+#include "behaviors/check/actuators/drives.h"
 #include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/did_you_mean.h"
@@ -205,6 +206,9 @@ void check_world_fits(const sim::WorldDescription& world, const model::RobotDesc
                       core::Diagnostics& diagnostics,
                       const std::vector<model::BodySprings>& holds) {
   sim::check_actuators(world, robot, diagnostics);
+  if (world.actuators.model == sim::ActuatorModel::series_elastic) {
+    behaviors::check_drives(robot, diagnostics);
+  }
   try {
     const bool names = !world.links.empty() || !world.variation.links.empty();
     // Spares reading the model.

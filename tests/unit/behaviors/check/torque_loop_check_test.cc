@@ -7,8 +7,10 @@
 #include <cmath>
 #include <random>
 
+#include "behaviors/check/actuators/drives.h"
 #include "behaviors/check/actuators/sampled_torque_loop.h"
 #include "hal/actuators/drive.h"
+#include "tests/support/hume.h"
 #include "tests/unit/behaviors/check/physics_test_support.h"
 
 namespace footfall::tests {
@@ -234,6 +236,21 @@ TEST(TorqueLoopCheck, ALiveEditThatWouldBeUnstableIsRefused) {
   const auto errors = edited.errors(values);
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_EQ(errors[0].id, "unstable-torque-loop");
+}
+
+TEST(TorqueLoopCheck, TheRobotsOwnLoopsAreJudgedWithoutABehavior) {
+  model::RobotDescription robot = load_hume();
+  core::Diagnostics good;
+  behaviors::check_drives(robot, good);
+  EXPECT_EQ(good.to_string(), "");
+  robot.drives.torque_loop[4].damping *= 100.0;  // more than the rate of 12 kHz can damp
+  core::Diagnostics bad;
+  behaviors::check_drives(robot, bad);
+  EXPECT_NE(bad.to_string().find("the torque loop of 'left_hip' is unstable"), std::string::npos);
+  robot.drives.torque_loop.clear();
+  core::Diagnostics unknown;
+  behaviors::check_drives(robot, unknown);
+  EXPECT_EQ(unknown.to_string(), "");
 }
 
 }  // namespace
