@@ -17,4 +17,11 @@ struct TorqueLoopGains {
   bool operator==(const TorqueLoopGains&) const = default;
 };
 
+// Whether no torque reference makes the motor move.
+constexpr bool gives_no_torque(const TorqueLoopGains& g) noexcept {
+  const bool no_error = g.p == 0.0 && g.i == 0.0;
+  if (g.type == TorqueLoopGains::Type::direct) return no_error && g.forward == 0.0;
+  return no_error || (g.velocity_p == 0.0 && g.velocity_i == 0.0);
+}
+
 }  // namespace footfall::hal

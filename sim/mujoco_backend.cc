@@ -39,6 +39,7 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
   model_ = model::compile_mjcf(scene_xml(robot, world), robot.model_path);
   model::use_own_settings(*model_);
   data_ = mj_makeData(model_);
+  tilt_axes();
   mj_forward(model_, data_);
   for (const model::JointDescription& j : robot.joints) {
     const int id = mj_name2id(model_, mjOBJ_JOINT, j.name.c_str());
@@ -83,6 +84,23 @@ MujocoBackend::~MujocoBackend() {
   core::set_mujoco_running(false, nullptr);
   mj_deleteData(data_);
   mj_deleteModel(model_);
+}
+
+// Of `axis_tilts`: the joint's body, and all that it carries, is turned in its parent.
+void MujocoBackend::tilt_axes() {
+  core::Diagnostics ignored;  // the world was checked
+  const std::vector<double> tilts = axis_tilts(world_, robot_, ignored);
+  for (std::size_t j = 0; j < tilts.size(); ++j) {
+    const int joint = mj_name2id(model_, mjOBJ_JOINT, robot_.joints[j].name.c_str());
+    if (tilts[j] == 0.0 || joint < 0) continue;
+    double* quat = model_->body_quat + 4 * model_->jnt_bodyid[joint];
+    const std::array<double, 4> turn = {std::cos(0.5 * tilts[j]), 0.0, 0.0,
+                                        std::sin(0.5 * tilts[j])};
+    std::array<double, 4> turned{};
+    mju_mulQuat(turned.data(), quat, turn.data());
+    std::copy(turned.begin(), turned.end(), quat);
+  }
+  mj_setConst(model_, data_);
 }
 
 // Sets the nominal posture, beside it what was drawn: upright, the lowest foot point touching the
@@ -155,6 +173,9 @@ bool MujocoBackend::read(hal::Sensors& s) noexcept {
     drive_->sample();
     for (std::size_t j = 0; j < qpos_.size(); ++j) {
       const hal::DriveMeasurement& measured = drive_->measured(static_cast<int>(j));
+      const hal::LinkBending bent = drive_->bending(static_cast<int>(j), s.qd[j]);
+      s.q[j] += bent.angle;
+      s.qd[j] += bent.rate;
       s.tau[j] = measured.torque;
       s.motor[j] = measured.motor_angle;
       s.motor_torque[j] = measured.motor_torque;
@@ -223,11 +244,12 @@ void MujocoBackend::apply_commands(const hal::Commands& commands) noexcept {
 
 // Springs' torques over a physics step. MuJoCo's velocities are those of the middle between two
 // positions (semi-implicit Euler): with the joints placed half a step back, their mean angle over
-// the drive's step is the present one, and the coupling neither adds nor takes energy. The spring
-// is no motor of the model: its torque is not clamped by a ctrlrange.
+// the drive's step is the present one, and the coupling adds and takes no energy up to third order.
+// With rk4 both are of one time. The spring is no motor of the model: its torque is not clamped by
+// a ctrlrange.
 void MujocoBackend::advance_drive(const hal::Commands& commands) noexcept {
   const std::size_t n = qpos_.size();
-  const double half = 0.5 * model_->opt.timestep;
+  const double half = model_->opt.integrator == mjINT_RK4 ? 0.0 : 0.5 * model_->opt.timestep;
   for (std::size_t j = 0; j < n; ++j) {
     joint_rates_[j] = data_->qvel[dof_[j]];
     joint_angles_[j] = data_->qpos[qpos_[j]] - half * joint_rates_[j];

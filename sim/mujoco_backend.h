@@ -86,6 +86,7 @@ class MujocoBackend final : public hal::Hardware {
   void attach_constraints();
   void sense_contacts(hal::Sensors& sensors) noexcept;
   std::int64_t warnings() const noexcept;
+  void tilt_axes();
   void place_at_posture();
 
   const model::RobotDescription& robot_;

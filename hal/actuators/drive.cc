@@ -18,6 +18,28 @@ double counted(double angle, double resolution) noexcept {
 
 }  // namespace
 
+// Spring and link in series: k l/(k + l).
+SeriesElasticDrive::Joint::Joint(const DriveJoint& of, double step)
+    : actuator(
+          [&of] {
+            SeriesElasticParameters together = of.actuator;
+            if (of.link > 0.0) together.spring *= of.link / (of.link + of.actuator.spring);
+            return together;
+          }(),
+          step),
+      loop(of.gains, step, of.actuator.rotor),
+      nominal_spring(of.nominal_spring) {
+  if (of.link <= 0.0) return;
+  link_share = of.actuator.spring / (of.link + of.actuator.spring);
+  spring_share = 1.0 - link_share;
+}
+
+LinkBending SeriesElasticDrive::bending(int joint, double joint_rate) const noexcept {
+  const Joint& bent = joints_[at(joint)];
+  const SeriesElasticState& state = bent.actuator.state();
+  return {bent.link_share * state.deflection, bent.link_share * (state.rate - joint_rate)};
+}
+
 double filter_share(double cutoff, double step) noexcept {
   return -std::expm1(-2.0 * std::numbers::pi * cutoff * step);
 }
@@ -47,13 +69,15 @@ void SeriesElasticDrive::start(std::span<const double> angles, std::span<const d
     Joint& joint = joints_[j];
     const double deflection = torques[j] / joint.actuator.parameters().spring;
     joint.actuator.set_state({deflection, 0.0});
-    joint.loop.reset();
     joint.motor_angle = angles[j] + deflection;
     joint.counted = counted(joint.motor_angle, settings_.motor_resolution);
-    joint.stretched = counted(deflection, settings_.deflection_resolution);
+    joint.stretched = counted(joint.spring_share * deflection, settings_.deflection_resolution);
     joint.rate = joint.spring_rate = joint.motor_torque = 0.0;
     joint.saturated = false;
     joint.reference = commanded_[j] = torques[j];
+    joint.loop.change(settings_.joints[j].gains, {});
+    joint.loop.reset();
+    joint.seen = {torques[j], joint.nominal_spring * joint.stretched, 0.0, 0.0};
     joint.measured = {joint.nominal_spring * joint.stretched, joint.counted, 0.0, false};
     for (std::size_t k = 0; k < commands_.length; ++k) {
       commands_.values[k * joints_.size() + j] = torques[j];
@@ -94,13 +118,15 @@ double SeriesElasticDrive::through(Delay& delay, std::size_t index, double value
 
 TorqueLoopInput SeriesElasticDrive::sense(Joint& joint, double joint_rate) const noexcept {
   const SeriesElasticState& state = joint.actuator.state();
-  const double stretched = counted(state.deflection, settings_.deflection_resolution);
+  const double stretched =
+      counted(joint.spring_share * state.deflection, settings_.deflection_resolution);
   const double angle = counted(joint.motor_angle, settings_.motor_resolution);
   const auto follow = [this](double& rate, double share, double now, double before, double exact) {
     rate = share > 0.0 ? rate + share * ((now - before) / settings_.step - rate) : exact;
   };
   follow(joint.rate, motor_share_, angle, joint.counted, state.rate);
-  follow(joint.spring_rate, spring_share_, stretched, joint.stretched, state.rate - joint_rate);
+  follow(joint.spring_rate, spring_share_, stretched, joint.stretched,
+         joint.spring_share * (state.rate - joint_rate));
   joint.counted = angle;
   joint.stretched = stretched;
   return {joint.reference, joint.nominal_spring * stretched, joint.rate, joint.spring_rate};

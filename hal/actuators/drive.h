@@ -16,6 +16,8 @@ struct DriveJoint {
   SeriesElasticParameters actuator;
   double nominal_spring = 0.0;  // N m/rad, with which the measured deflection becomes a torque
   TorqueLoopGains gains;        // at the start
+  // N m/rad, of a link that bends behind the joint's encoder, in series with the spring; 0: rigid.
+  double link = 0.0;
 };
 
 // How the loops get rates from encoders: differences of their counts, first-order filtered.
@@ -45,6 +47,12 @@ struct DriveMeasurement {
   bool saturated = false;     // since then the motor gave less than its loop asked for
 };
 
+// How far a link is bent: what the joint's encoder shows beyond the link's end.
+struct LinkBending {
+  double angle = 0.0;  // rad
+  double rate = 0.0;   // rad/s
+};
+
 class SeriesElasticDrive {
  public:
   // Throws std::invalid_argument as SeriesElasticActuator, and for steps or delays below 0.
@@ -65,18 +73,19 @@ class SeriesElasticDrive {
   void sample() noexcept;
 
   const DriveMeasurement& measured(int joint) const noexcept;
+  // At the joint velocity given, rad/s.
+  LinkBending bending(int joint, double joint_rate) const noexcept;
   const SeriesElasticActuator& actuator(int joint) const noexcept;
   const TorqueLoopGains& gains(int joint) const noexcept;
 
  private:
   struct Joint {
-    Joint(const DriveJoint& of, double step)
-        : actuator(of.actuator, step),
-          loop(of.gains, step, of.actuator.rotor),
-          nominal_spring(of.nominal_spring) {}
+    Joint(const DriveJoint& of, double step);
     SeriesElasticActuator actuator;
     TorqueLoop loop;
     double nominal_spring = 0.0;
+    // Of θ − q, q at the end of the link: in the spring, and in the link. Nothing has mass between.
+    double spring_share = 1.0, link_share = 0.0;
     double reference = 0.0;                 // as the loop has it
     double motor_angle = 0.0;               // rad
     double counted = 0.0, stretched = 0.0;  // as the encoders gave θ and θ − q last, rad

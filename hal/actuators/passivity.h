@@ -27,7 +27,7 @@ std::complex<double> output_admittance(const TorqueLoopGains& gains,
 // viscous friction,
 //   (1 + P_v P_t)(b + P_v) − J (P_v I_t + I_v P_t)  and  I_v (I_v P_t − I_t b)
 // must be 0 or more (hume-facts 6 for b = 0); for `direct` (1 + P)(b + D) − I J, D that on θ' only.
-// The smaller one, of the first relative to its positive part.
+// The smaller one, each relative to its positive part.
 double passivity_margin(const TorqueLoopGains& gains, const SeriesElasticParameters& actuator);
 
 // The least Re a(jω) of a sweep of `points` frequencies from `from` to `to`, Hz, spaced by ratio.

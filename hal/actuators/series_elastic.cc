@@ -76,10 +76,11 @@ SeriesElasticStep SeriesElasticActuator::advance(double motor_torque, double joi
     const double f = std::clamp(rate_without / slope, -parameters_.coulomb, parameters_.coulomb);
     const double e1 = state_.deflection - free + f / k;
     const double angle = joint_rate * step_ + (phi_[0] - 1.0) * e1 + phi_[1] * slip;
-    // In a step in which θ' changes its sign f would drive: it then begins with the next step. At
-    // rest the angle is rounding.
-    constexpr double kRounding = 1e-15;  // rad
-    if (f * angle >= -kRounding * std::abs(f)) done.friction_torque = f;
+    // In a step in which θ' changes its sign f would drive: it then begins with the next step. A
+    // rotor at rest stays there, whatever the joint does: the mean torque that holds it moves it by
+    // a third-order angle within the step.
+    constexpr double kRest = 1e-12;  // rad/s
+    if (f * angle >= 0.0 || std::abs(state_.rate) < kRest) done.friction_torque = f;
   }
   const double steady = free - done.friction_torque / k;
   const double e1 = state_.deflection - steady, e2 = slip;

@@ -86,6 +86,9 @@ void StubBackend::sense_actuators(Sensors& sensors) noexcept {
   sensors.motor_saturated = false;
   for (std::size_t j = 0; j < q_.size(); ++j) {
     const DriveMeasurement& measured = drive_->measured(static_cast<int>(j));
+    const LinkBending bent = drive_->bending(static_cast<int>(j), qd_[j]);
+    sensors.q[j] += bent.angle;
+    sensors.qd[j] += bent.rate;
     sensors.tau[j] = measured.torque;
     sensors.motor[j] = measured.motor_angle;
     sensors.motor_torque[j] = measured.motor_torque;

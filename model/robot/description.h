@@ -38,7 +38,8 @@ struct DriveDescription {
   hal::RateFilters filters{kUnfiltered, kUnfiltered};
   // Gains at the start, by joint; empty: the robot does not tell.
   std::vector<hal::TorqueLoopGains> torque_loop;
-  core::Mark mark;  // of the section
+  core::Mark mark;   // of the section
+  std::string file;  // of that position
 };
 
 enum class ContactType { point, surface, fixed };

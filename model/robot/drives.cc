@@ -91,9 +91,15 @@ void read_actuator(const YamlNode& sea, JointDescription& joint, Diagnostics& di
 void read_drives(const YamlNode& node, RobotDescription& robot, Diagnostics& diagnostics) {
   DriveDescription& drives = robot.drives;
   drives.mark = node.mark;
+  drives.file = diagnostics.file(node.mark.file);
   if (!core::expect_map(node, "{torque_loop: {...}}", diagnostics)) return;
   core::check_keys(node, kDrivesKeys, diagnostics);
-  read_positive(node, "rate", core::kRate, drives.rate, diagnostics);
+  constexpr double kFastest = 1e6;  // Hz
+  if (const YamlNode* rate = node.find("rate")) {
+    drives.rate = core::read_bounded(*rate, core::kRate, 1.0, kFastest, diagnostics,
+                                     "a rate of 1 Hz to 1 MHz")
+                      .value_or(drives.rate);
+  }
   read_positive(node, "motor_filter", core::kRate, drives.filters.motor, diagnostics);
   read_positive(node, "spring_filter", core::kRate, drives.filters.spring, diagnostics);
   if (const YamlNode* loop = core::require_key(node, "torque_loop", diagnostics)) {

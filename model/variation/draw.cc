@@ -106,8 +106,8 @@ void draw_actuators(const Variation& v, int joints, std::uint64_t seed, Draw& ou
   }
   if (is_drawn(v.coulomb)) {
     Source source(seed, Stream::coulomb);
-    for (int j = 0; j < joints; ++j) out.coulomb.push_back(source.of(v.coulomb));
-    out.values.emplace_back("actuators.coulomb_Nm", out.coulomb);
+    for (int j = 0; j < joints; ++j) out.coulomb.push_back(1.0 + source.of(v.coulomb));
+    out.values.emplace_back("actuators.coulomb", out.coulomb);
   }
 }
 

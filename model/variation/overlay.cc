@@ -73,16 +73,9 @@ void prepare_variation(YamlNode& base, const YamlNode& own) {
   if (!base.is_map() || !own.is_map()) return;
   YamlNode* const drawn = find(base, "variation");
   if (drawn == nullptr) return;
-  const auto gives = [&own](std::string_view section, std::string_view key) {
-    const YamlNode* const map = own.find(section);
-    const YamlNode* const value = map == nullptr || !map->is_map() ? nullptr : map->find(key);
-    return value != nullptr && !is_off(*value);
-  };
-  if (gives("ground", "friction")) erase(*drawn, "friction");
-  YamlNode* const actuators = find(*drawn, "actuators");
-  if (gives("actuators", "coulomb") && actuators != nullptr && actuators->is_map()) {
-    erase(*actuators, "coulomb");
-  }
+  const YamlNode* const ground = own.find("ground");
+  const YamlNode* const friction = ground == nullptr ? nullptr : ground->find("friction");
+  if (friction != nullptr && !is_off(*friction)) erase(*drawn, "friction");
   const YamlNode* const variation = own.find("variation");
   if (variation == nullptr) return;
   if (is_off(*variation)) {

@@ -38,7 +38,7 @@ constexpr KeySpec kVariedActuatorsRows[] = {
     key("spring", map_of(kSpreadKeys), any_quantity(),
         "relative change of each actuator's spring, beside what its drive counts on"),
     key("coulomb", map_of(kSpreadKeys), any_quantity(),
-        "Coulomb friction of each actuator, in the place of the world's"),
+        "relative change of each actuator's Coulomb friction"),
 };
 
 constexpr KeySpec kVariedPushRows[] = {
@@ -171,9 +171,7 @@ class Reader {
     if (!expect_map(node, "{spring: ..., coulomb: ...}", diagnostics_)) return;
     check_keys(node, kVariedActuatorsKeys, diagnostics_);
     spread(node, "spring", kNone, -0.9, 9.0, out.spring);
-    spread(node, "coulomb", kTorque, 0.0, kInfinity, out.coulomb);
-    refuse_normal(node, "coulomb", out.coulomb,
-                  "friction cannot be negative: expected {range: [0.5 Nm, 1.5 Nm]}");
+    spread(node, "coulomb", kNone, -1.0, 9.0, out.coulomb);
   }
 
   void push(const YamlNode& node, Variation& out) {

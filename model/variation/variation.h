@@ -59,7 +59,7 @@ struct Variation {
   std::vector<NamedLink> links;       // those of `com`, as named
   Spread command_delay;               // s, added to the world's
   Spread spring;                      // relative change of each actuator's spring
-  Spread coulomb;                     // N m, of each actuator, in the place of the world's
+  Spread coulomb;                     // relative change of each actuator's Coulomb friction
   NamedLink actuators;                // where these two stand
   PushSpread push;
 
@@ -84,8 +84,7 @@ Variation read_variation(const core::YamlNode& node, const Variation& base,
 
 // Before the merge of a world or scenario over its base (core::YamlLayers): `off` stays as a value,
 // since what it takes away may come from elsewhere, such as a scenario's world; one kind of
-// distribution replaces the other; a `ground: {friction}` or `actuators: {coulomb}` replaces the
-// base's draw of it.
+// distribution replaces the other; a `ground: {friction}` replaces the base's draw of it.
 void prepare_variation(core::YamlNode& base, const core::YamlNode& own);
 
 struct DrawnPush {
@@ -105,7 +104,7 @@ struct Draw {
   std::map<std::string, std::array<double, 2>> com;  // m, by link
   std::optional<double> command_delay;               // s, added
   std::vector<double> springs;                       // factor, by joint
-  std::vector<double> coulomb;                       // N m, by joint
+  std::vector<double> coulomb;                       // factor, by joint
   std::optional<DrawnPush> push;
   // What was drawn, by name with its unit (`start.velocity_mps`), for summaries and logs.
   std::vector<std::pair<std::string, std::vector<double>>> values;

@@ -8,8 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/yaml/glob.h"
 #include "core/yaml/value_reader.h"
+#include "sim/world/by_joint.h"
 #include "sim/world/keys.h"
 
 namespace footfall::sim {
@@ -26,34 +26,19 @@ std::optional<double> read_change(const YamlNode& node, Diagnostics& diagnostics
                             "a change such as \"+3 %\"");
 }
 
-// Positions in a file that these diagnostics may not know yet.
-void move_to(YamlNode& node, int file) {
-  node.mark.file = file;
-  for (core::YamlEntry& entry : node.entries) {
-    entry.key_mark.file = file;
-    move_to(entry.value, file);
-  }
+std::optional<double> read_stiffness(const YamlNode& node, Diagnostics& diagnostics) {
+  return core::read_bounded(node, core::kTorque, 1.0, std::numeric_limits<double>::infinity(),
+                            diagnostics, "a stiffness of at least 1 Nm/rad");
 }
 
 // Factors of the springs, by joint: the world's times what was drawn.
 std::vector<double> spring_factors(const ActuatorSettings& actuators,
                                    const model::RobotDescription& robot, Diagnostics& diagnostics) {
-  std::vector<double> factors(robot.joints.size(), 1.0);
-  YamlNode spring = actuators.spring;
-  move_to(spring, diagnostics.add_file(actuators.file));
-  if (spring.is_scalar() && !spring.scalar.empty()) {
-    factors.assign(factors.size(), 1.0 + read_change(spring, diagnostics).value_or(0.0));
-  } else if (spring.is_map()) {
-    std::vector<std::string> names;
-    for (const model::JointDescription& joint : robot.joints) names.push_back(joint.name);
-    const auto entries = core::match_names(spring, names, "joint", diagnostics);
-    for (std::size_t j = 0; j < entries.size(); ++j) {
-      if (entries[j] == nullptr) continue;
-      factors[j] = 1.0 + read_change(entries[j]->value, diagnostics).value_or(0.0);
-    }
-  }
-  for (std::size_t j = 0; j < factors.size() && j < actuators.drawn_springs.size(); ++j) {
-    factors[j] *= actuators.drawn_springs[j];
+  std::vector<double> factors =
+      by_joint({actuators.spring, actuators.file}, read_change, robot, diagnostics);
+  for (std::size_t j = 0; j < factors.size(); ++j) {
+    factors[j] += 1.0;
+    if (j < actuators.drawn_springs.size()) factors[j] *= actuators.drawn_springs[j];
   }
   return factors;
 }
@@ -89,20 +74,20 @@ void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnosti
   };
   read("command_delay", core::kTime, kLongestDelay, actuators.command_delay);
   read("measurement_delay", core::kTime, kLongestDelay, actuators.measurement_delay);
-  read("viscous", core::kAngularMomentum, kAny, actuators.viscous, "a damping");
+  constexpr double kMostViscous = 1e4;  // N m s/rad: with more, round-off moves a locked rotor
+  read("viscous", core::kAngularMomentum, kMostViscous, actuators.viscous, "a damping");
   read("coulomb", core::kTorque, kAny, actuators.coulomb);
   read("motor_resolution", core::kNone, 1.0, actuators.motor_resolution, "an angle");
   read("deflection_resolution", core::kNone, 1.0, actuators.deflection_resolution, "an angle");
-  if (const YamlNode* spring = node.find("spring")) {
-    actuators.spring = *spring;
-    actuators.elastic_keys.push_back({"spring", spring->mark});
-    if (spring->is_scalar()) {
-      read_change(*spring, diagnostics);
-    } else if (core::expect_map(*spring, "a change such as \"+3 %\", or one by joint",
-                                diagnostics)) {
-      for (const core::YamlEntry& entry : spring->entries) read_change(entry.value, diagnostics);
-    }
-  }
+  const auto keep = [&](const char* key, ReadValue read_one, const char* expected, YamlNode& out) {
+    const YamlNode* const value = node.find(key);
+    if (value == nullptr) return;
+    out = *value;
+    actuators.elastic_keys.push_back({key, value->mark});
+    check_by_joint(*value, read_one, expected, diagnostics);
+  };
+  keep("spring", read_change, "a change such as \"+3 %\", or one by joint", actuators.spring);
+  keep("flexible", read_stiffness, "a stiffness, or one by joint", actuators.flexible);
 }
 
 void check_actuators(const ActuatorSettings& actuators, const model::RobotDescription& robot,
@@ -134,6 +119,7 @@ void check_actuators(const ActuatorSettings& actuators, const model::RobotDescri
                     robot.drives.rate, robot.name, robot.rate_hz() * steps_per_tick));
   }
   spring_factors(actuators, robot, diagnostics);
+  by_joint({actuators.flexible, actuators.file}, read_stiffness, robot, diagnostics);
 }
 
 hal::DriveSettings drive_settings(const ActuatorSettings& actuators,
@@ -142,19 +128,21 @@ hal::DriveSettings drive_settings(const ActuatorSettings& actuators,
   check_actuators(actuators, robot, plant_steps, problems);
   if (problems.has_errors()) throw std::runtime_error(problems.all().front().text);
   const std::vector<double> factors = spring_factors(actuators, robot, problems);
+  const std::vector<double> links =
+      by_joint({actuators.flexible, actuators.file}, read_stiffness, robot, problems);
   hal::DriveSettings settings;
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const model::JointDescription& joint = robot.joints[j];
-    const double coulomb =
-        j < actuators.drawn_coulomb.size() ? actuators.drawn_coulomb[j] : actuators.coulomb;
+    const double factor = j < actuators.drawn_coulomb.size() ? actuators.drawn_coulomb[j] : 1.0;
     settings.joints.push_back({{.spring = joint.spring * factors[j],
                                 .rotor = joint.rotor,
                                 .viscous = actuators.viscous,
-                                .coulomb = coulomb,
+                                .coulomb = factor * actuators.coulomb,
                                 .torque = joint.motor_torque,
                                 .speed = joint.motor_speed},
                                joint.spring,
-                               robot.drives.torque_loop[j]});
+                               robot.drives.torque_loop[j],
+                               links[j]});
   }
   settings.steps = steps_of(robot, plant_steps);
   settings.step = 1.0 / robot.drives.rate;

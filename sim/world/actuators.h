@@ -24,6 +24,7 @@ struct ActuatorSettings {
   double motor_resolution = 0.0;       // rad, of the motors' encoders
   double deflection_resolution = 0.0;  // rad, of the springs' encoders
   core::YamlNode spring;               // relative change of springs: for all, or by joint
+  core::YamlNode flexible;             // N m/rad, stiffness of links: for all, or by joint
   core::Mark mark;                     // position of `model`, else of the section
   std::string file;                    // of these positions
   struct Key {
@@ -33,7 +34,7 @@ struct ActuatorSettings {
   std::vector<Key> elastic_keys;  // those written that need series_elastic
   // As drawn, by joint; empty: not drawn.
   std::vector<double> drawn_springs;  // factors
-  std::vector<double> drawn_coulomb;  // N m, in the place of `coulomb`
+  std::vector<double> drawn_coulomb;  // factors
 };
 
 void read_actuators(const core::YamlNode& node, ActuatorSettings& actuators,

@@ -37,9 +37,21 @@ void check_links(const WorldDescription& world, const std::vector<std::string>& 
   model::check_links(world.variation.links, bodies, diagnostics);
 }
 
+std::optional<double> read_tilt(const core::YamlNode& node, Diagnostics& diagnostics) {
+  constexpr double kMost = 0.5;  // rad
+  return core::read_bounded(node, core::kNone, -kMost, kMost, diagnostics,
+                            "an angle within 0.5 rad");
+}
+
+std::vector<double> axis_tilts(const WorldDescription& world, const model::RobotDescription& robot,
+                               Diagnostics& diagnostics) {
+  return by_joint(world.axis_tilts, read_tilt, robot, diagnostics);
+}
+
 void check_actuators(const WorldDescription& world, const model::RobotDescription& robot,
                      Diagnostics& diagnostics) {
   check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
+  axis_tilts(world, robot, diagnostics);
   if (world.actuators.model != ActuatorModel::ideal || !world.variation.draws_actuators()) return;
   core::Mark mark = world.variation.actuators.mark;
   mark.file = diagnostics.add_file(world.variation.actuators.file);

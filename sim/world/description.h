@@ -13,6 +13,7 @@
 #include "model/height_surface.h"
 #include "model/variation/variation.h"
 #include "sim/world/actuators.h"
+#include "sim/world/by_joint.h"
 
 namespace footfall::sim {
 
@@ -90,6 +91,7 @@ struct WorldDescription {
   model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
   std::vector<model::NamedLink> links;  // of its `com` and its constraints
   std::vector<model::BodySprings> constraints;
+  ByJoint axis_tilts;             // rad, each joint's frame about its z, in the simulation only
   double planner_latency = 2e-3;  // s, between planner request and plan, in lock-step
   model::Variation variation;     // what a seed draws
   StartOffsets start;             // what was drawn
@@ -116,6 +118,10 @@ WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);
 // Reports everything that a world asks for and this simulator does not support (id "unsupported"),
 // so that nothing in a file is ignored silently.
 void check_supported(const WorldDescription& world, core::Diagnostics& diagnostics);
+
+// The tilts of a robot's joints; reports joints that it does not have.
+std::vector<double> axis_tilts(const WorldDescription& world, const model::RobotDescription& robot,
+                               core::Diagnostics& diagnostics);
 
 // Reports what actuators need and the robot lacks, what its drives cannot be simulated with, and
 // draws of actuators that are ideal.

@@ -25,6 +25,10 @@ constexpr KeySpec kWorldRows[] = {
         "model errors of the controller, relative to the simulation"),
     key("constraints", by_name(map_of(model::kConstraintKeys)),
         "external aids by name, such as a planarizer, a hoist or a harness; none by default"),
+    key("axis_tilts", by_axis(quantity(kNone, "an angle")),
+        "of joints about the z axis of their frame, in the simulation and not in the controller's "
+        "model; what hangs on the joint turns, too")
+        .otherwise("0 rad"),
     key("planner_latency", quantity(kTime), "time from a planner request to its answer")
         .otherwise("2 ms"),
     key("variation", map_of(model::kVariationKeys), "what a seed draws"),
@@ -85,6 +89,10 @@ constexpr KeySpec kActuatorsRows[] = {
         "series_elastic: relative change of the true springs, for all joints or by joint; the "
         "drives count on those of the robot's file")
         .otherwise("0 %"),
+    key("flexible", by_axis(quantity(kTorque, "a stiffness")),
+        "series_elastic: links that bend about their joint's axis, behind its encoder: stiffness, "
+        "for all joints or by joint")
+        .otherwise("rigid"),
 };
 
 constexpr KeySpec kWorldSensorsRows[] = {

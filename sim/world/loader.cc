@@ -43,6 +43,10 @@ class WorldLoader {
     }
     if (const YamlNode* node = root.find("sensors")) read_sensors(*node);
     if (const YamlNode* node = root.find("control_model")) read_control_model(*node);
+    if (const YamlNode* node = root.find("axis_tilts")) {
+      world_.axis_tilts = {*node, diagnostics_.file(node->mark.file)};
+      check_by_joint(*node, read_tilt, "an angle by joint", diagnostics_);
+    }
     if (const YamlNode* node = root.find("constraints")) read_constraints(*node);
     if (const YamlNode* node = root.find("physics")) read_physics(*node);
     if (const YamlNode* node = root.find("stand")) read_stand(*node);
@@ -93,25 +97,14 @@ class WorldLoader {
 
   // Of two files the one on top decides (model::prepare_variation); in one file nobody could tell.
   void refuse_two_frictions(const YamlNode& root) {
-    const auto child = [](const YamlNode* map, std::string_view key) {
-      return map == nullptr || !map->is_map() ? nullptr : map->find(key);
-    };
-    const YamlNode* const draws = root.find("variation");
-    const auto refuse = [&](std::string_view section, std::string_view key, const YamlNode* drawn,
-                            std::string_view draw) {
-      const YamlNode* const value = child(root.find(section), key);
-      if (value == nullptr || drawn == nullptr || core::is_off(*drawn) ||
-          drawn->mark.file != value->mark.file) {
-        return;
-      }
-      diagnostics_.error(drawn->mark, "misplaced-key",
-                         fmt::format("'variation: {}' beside '{}: {{{}}}': the draw would take the "
-                                     "place of the value; only one is allowed",
-                                     draw, section, key));
-    };
-    refuse("ground", "friction", child(draws, "friction"), "{friction}");
-    refuse("actuators", "coulomb", child(child(draws, "actuators"), "coulomb"),
-           "{actuators: {coulomb}}");
+    const YamlNode* const ground = root.find("ground");
+    const YamlNode* const value = ground == nullptr ? nullptr : ground->find("friction");
+    if (value == nullptr || world_.variation.friction.kind == model::Spread::Kind::none) return;
+    const YamlNode& drawn = *root.find("variation")->find("friction");
+    if (drawn.mark.file != value->mark.file) return;
+    diagnostics_.error(drawn.mark, "misplaced-key",
+                       "'variation: {friction}' beside 'ground: {friction}': the draw would take "
+                       "the place of the value; only one is allowed");
   }
 
   void read_box(const YamlNode& node) {

@@ -216,6 +216,14 @@ class TorqueLoopCheck {
     }
     const TorqueLoopGains gains = torque_loop_gains(b(), index, joint, b().values);
     if (is_unknown(table, gains)) return;
+    if (hal::gives_no_torque(gains) && !b().robot.drives.torque_loop.empty()) {
+      context_.findings.add(Severity::warning, table.mark, "idle-torque-loop", table.name,
+                            fmt::format("torque_loop '{}' gives '{}' no torque at all: expected p "
+                                        "(and velocity_p of a cascade) above 0; p and i of the "
+                                        "robot's own loops are of their type only",
+                                        table.name, description.name));
+      return;
+    }
     const JointLoop loop(description, context_.behavior.robot.drives, gains);
     if (find_unstable(table, joint, loop, Severity::error, "")) return;
     const bool passive = !find_active(table, joint, loop, "");

@@ -212,8 +212,8 @@ TEST(Drive, RespondsAsTheSampledTransferFunctionLockedAndFree) {
 
 // The rotor nearly locked by its inertia, a link on the spring, integrated by the semi-implicit
 // rule as a simulator does: placed where the link is in the middle of the step, the two conserve
-// energy. Were the velocities all that the drive knew, the torque would be ahead by half a step: k
-// h/2 of negative damping, which here doubles the amplitude in 0.5 s.
+// energy. Were the velocities all that the drive knew, the torque would be late by half a step: k
+// h/2 of negative damping, which here doubles the amplitude in 1 s.
 TEST(Drive, ALinkOnItsSpringNeitherGainsNorLosesEnergy) {
   constexpr double kStep = 4 * kLoopStep, kInertia = 0.05, kStretched = 0.1;
   DriveSettings settings = one_joint({});

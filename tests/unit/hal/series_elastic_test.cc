@@ -131,6 +131,21 @@ TEST(SeriesElastic, CoulombFrictionHoldsTheRotorUpToItsLimit) {
   EXPECT_NEAR(actuator.spring_torque(), 5.0, 1.0 + 1e-9);
 }
 
+// A constant torque below the limit, and a joint that moves: the spring's torque stays within the
+// limit of the rotor's friction, which holds it in every step and does not let it creep.
+TEST(SeriesElastic, CoulombFrictionHoldsTheRotorWhileTheJointMoves) {
+  SeriesElasticActuator actuator({.spring = 415.0, .rotor = 0.0872756, .coulomb = 5.0}, kLoopStep);
+  double turned = 0.0;
+  for (int k = 0; k < 120000; ++k) {
+    const double swing = 2.0 * std::numbers::pi * 3.0;  // 3 Hz, 1 mrad: 0.4 N m
+    const double rate = 1e-3 * swing * std::cos(swing * k * kLoopStep);
+    const SeriesElasticStep done = actuator.advance(0.8, rate);
+    turned += done.motor_angle;
+    ASSERT_NEAR(done.friction_torque, 0.8 - done.spring_torque, 0.01) << k;
+  }
+  EXPECT_LT(std::abs(turned), 1e-6);
+}
+
 TEST(SeriesElastic, CoulombFrictionTakesEnergyInEveryStep) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;

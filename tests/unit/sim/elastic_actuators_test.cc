@@ -100,11 +100,11 @@ TEST_F(ElasticActuators, TheMeasuredTorqueCountsOnTheNominalSpring) {
 TEST_F(ElasticActuators, WhatASeedDrewOfSpringsAndFrictionIsInTheDrive) {
   model::Draw drawn;
   drawn.springs = {1.0, 1.0, 0.97, 1.0, 1.0, 1.0};
-  drawn.coulomb = {0.0, 0.0, 1.3, 0.0, 0.0, 0.0};
-  start(sim::with_draw(elastic_world(", spring: 10 %, coulomb: 9 Nm"), drawn));
+  drawn.coulomb = {1.0, 1.0, 1.3, 1.0, 1.0, 1.0};
+  start(sim::with_draw(elastic_world(", spring: 10 %, coulomb: 2 Nm"), drawn));
   const hal::SeriesElasticParameters& knee = backend->drive()->actuator(kKneeJoint).parameters();
   EXPECT_DOUBLE_EQ(knee.spring, 0.97 * 1.1 * robot.joints[kKneeJoint].spring);
-  EXPECT_DOUBLE_EQ(knee.coulomb, 1.3);
+  EXPECT_DOUBLE_EQ(knee.coulomb, 2.6);
 }
 
 // The springs act inside the robot: its momentum is that of free fall.
