@@ -77,6 +77,7 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
   delay_line_.assign(delay + 1, std::vector<double>(robot.joints.size(), 0.0));
   if (world.actuators.model == ActuatorModel::series_elastic) {
     drive_.emplace(drive_settings(world.actuators, robot, world.physics.steps_per_tick));
+    refuse_stiff_springs();
   }
 }
 
@@ -84,6 +85,26 @@ MujocoBackend::~MujocoBackend() {
   core::set_mujoco_running(false, nullptr);
   mj_deleteData(data_);
   mj_deleteModel(model_);
+}
+
+// Between two physics steps a spring's torque does not see its joint move: stable up to h^2 k = 4 a
+// (semi-implicit Euler), a the joint's inertia with all else free, least in the start's posture or
+// another; a quarter of it is refused for that.
+void MujocoBackend::refuse_stiff_springs() {
+  const double h = model_->opt.timestep;
+  std::vector<double> column(at(model_->nv));
+  for (std::size_t j = 0; j < dof_.size(); ++j) {
+    std::fill(column.begin(), column.end(), 0.0);
+    column[at(dof_[j])] = 1.0;
+    mj_solveM(model_, data_, column.data(), column.data(), 1);
+    const double most = 1.0 / (h * h * column[at(dof_[j])]);
+    const double spring = drive_->actuator(static_cast<int>(j)).parameters().spring;
+    if (spring <= most) continue;
+    throw std::runtime_error(robot_.path + ": error: the spring of joint '" +
+                             robot_.joints[j].name + "' is too stiff for the physics step: " +
+                             std::to_string(spring) + " Nm/rad, expected at most " +
+                             std::to_string(most) + " (or a larger physics: timestep_divisor)");
+  }
 }
 
 // Of `axis_tilts`: the joint's body, and all that it carries, is turned in its parent.

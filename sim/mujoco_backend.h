@@ -87,6 +87,7 @@ class MujocoBackend final : public hal::Hardware {
   void sense_contacts(hal::Sensors& sensors) noexcept;
   std::int64_t warnings() const noexcept;
   void tilt_axes();
+  void refuse_stiff_springs();
   void place_at_posture();
 
   const model::RobotDescription& robot_;

@@ -45,6 +45,9 @@ std::string verdict(const lab::ActuatorEstimate& found) {
       return fmt::format(
           "NOT IDENTIFIED: the motor moves in one direction for long enough during {:.2f} s only",
           found.used);
+    case Richness::absurd:
+      return "NOT IDENTIFIED: a parameter is negative; the log does not fit the model of a motor "
+             "on a spring, or its encoders are too coarse";
     case Richness::still:
       return fmt::format("NOT IDENTIFIED: the motor did not move (by {:.2g} rad)", found.travel);
   }

@@ -9,6 +9,7 @@
 #include "apps/run/run_reload.h"
 #include "apps/run/run_setup.h"
 #include "apps/run/stub_setup.h"
+#include "apps/run/world_settings.h"
 #include "apps/shared/commands.h"
 #include "apps/shared/output_option.h"
 #include "core/text/json_text.h"
@@ -164,8 +165,10 @@ int run_behavior(RunOptions options) {
   }
   require_film_name(options.film);
   separate_world_settings(options);
-  sim::WorldDescription declared =
-      declared_world(options, load_world(options.world, {}, {}, options.world_set));
+  const bool world_given = std::ranges::find(options.given, "--world") != options.given.end();
+  sim::WorldDescription declared = declared_world(
+      options, load_world(options.world, {}, {}, world_settings(options, world_given)));
+  declared.name += world_settings_text(options);
   const behaviors::PhysicsWorld physics = physics_world(declared);
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
@@ -174,8 +177,7 @@ int run_behavior(RunOptions options) {
                      ": error: a behavior without `robot:` cannot be run; see `footfall trace`");
   }
   check_duration(options, behavior->robot);
-  const bool world_given = std::ranges::find(options.given, "--world") != options.given.end();
-  if (options.backend == "stub" && !world_given) {
+  if (options.backend == "stub" && !world_given && options.world_set.empty()) {
     declared = stand_world(std::move(declared), behavior->robot);
   }
   check_world_fits(declared, behavior->robot);

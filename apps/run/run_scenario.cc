@@ -10,6 +10,7 @@
 #include "apps/log/report_command.h"
 #include "apps/run/run_setup.h"
 #include "apps/run/stub_setup.h"
+#include "apps/run/world_settings.h"
 #include "apps/shared/commands.h"
 #include "behaviors/check/physics/check.h"
 #include "core/text/json_text.h"
@@ -47,12 +48,15 @@ CheckedScenario load_checked(const RunOptions& options) {
   if (!scenario.behavior->has_robot) {
     throw InputError(options.behavior + ": error: its behavior has no `robot:` and cannot be run");
   }
-  sim::WorldDescription world =
-      load_world(scenario.world, scenario.world_from,
-                 lab::place_in_file(scenario, scenario.world_mark), options.world_set);
+  refuse_shadowed_settings(options, scenario);
+  const bool world_given = scenario.world_mark.line != 0;
+  sim::WorldDescription world = load_world(scenario.world, scenario.world_from,
+                                           lab::place_in_file(scenario, scenario.world_mark),
+                                           world_settings(options, world_given));
+  world.name += world_settings_text(options);
   world.variation = lab::variation_over(scenario, world.variation);
   world = declared_world(options, std::move(world));
-  if (options.backend == "stub" && scenario.world_mark.line == 0) {
+  if (options.backend == "stub" && !world_given && options.world_set.empty()) {
     world = stand_world(std::move(world), scenario.behavior->robot);
   }
   check_world_fits(world, scenario.behavior->robot, lab::holds_of(scenario));

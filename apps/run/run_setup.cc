@@ -27,23 +27,6 @@ namespace footfall::apps {
 
 namespace fs = std::filesystem;
 
-void separate_world_settings(RunOptions& options) {
-  constexpr std::string_view kWorld = "world.";
-  std::vector<std::string> others;
-  for (const std::string& text : options.set) {
-    const std::size_t equals = text.find('=');
-    if (!text.starts_with(kWorld)) {
-      others.push_back(text);
-    } else if (equals == std::string::npos) {
-      throw InputError("--set " + text + ": error: expected NAME=VALUE");
-    } else {
-      options.world_set.emplace_back(text.substr(kWorld.size(), equals - kWorld.size()),
-                                     text.substr(equals + 1));
-    }
-  }
-  options.set = std::move(others);
-}
-
 sim::WorldDescription load_world(const std::string& name, const std::string& beside,
                                  const std::string& place, const sim::WorldSettings& settings) {
   core::Diagnostics diagnostics;
@@ -127,6 +110,9 @@ namespace {
 // Parts of the `physics` line that most worlds lack: `, command delay 2 ms, model mass +10 %`.
 std::string more_physics(const sim::WorldDescription& world) {
   std::string text;
+  if (world.actuators.model == sim::ActuatorModel::series_elastic) {
+    text += ", series-elastic actuators";
+  }
   if (world.actuators.command_delay > 0.0) {
     text += fmt::format(", command delay {:.3g} ms", world.actuators.command_delay * 1e3);
   }

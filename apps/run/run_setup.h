@@ -29,10 +29,6 @@ struct Backend {
   std::vector<std::string> constraints;  // names of the world's external aids
 };
 
-// Moves the settings of the world (`--set world.KEY=VALUE`) from `set` to `world_set`. Throws
-// InputError for one without a value.
-void separate_world_settings(RunOptions& options);
-
 // Loads a world by name or path, with `settings` over it. `beside`: a file in whose folder it is
 // searched first; `place`: position of the reference, for messages. Prints problems and throws
 // InputError.

@@ -10,10 +10,10 @@ namespace footfall::apps {
 
 sim::WorldDescription stand_world(sim::WorldDescription world,
                                   const model::RobotDescription& robot) {
-  const bool elastic =
-      !robot.drives.torque_loop.empty() &&
-      std::ranges::all_of(robot.joints, [](const auto& joint) { return joint.spring > 0.0; });
-  if (elastic) world.actuators.model = sim::ActuatorModel::series_elastic;
+  const bool rigid =
+      robot.drives.torque_loop.empty() &&
+      std::ranges::all_of(robot.joints, [](const auto& joint) { return joint.spring == 0.0; });
+  if (rigid) world.actuators.model = sim::ActuatorModel::ideal;
   return world;
 }
 

@@ -8,8 +8,8 @@
 
 namespace footfall::apps {
 
-// The world of a run on the stand to which none was given: with the robot's series-elastic
-// actuators where it has them, without imperfections.
+// The world of a run on the stand to which none was given, which has series-elastic actuators
+// without imperfections: ideal ones for a robot that has no others.
 sim::WorldDescription stand_world(sim::WorldDescription world,
                                   const model::RobotDescription& robot);
 

@@ -117,6 +117,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"too-large", kError, "exceeds a size limit, possibly by aliases"},
     {"too-many", kError, "too many states, tasks, axes or planners"},
     {"too-short", kWarning, "a phase or trajectory shorter than two ticks"},
+    {"torque-loop", kError, "a robot's own torque loop that is unstable or gives no torque"},
     {"unheard", kWarning, "an event that no transition or script listens to"},
     {"unknown-argument", kError, "an argument that the template does not have"},
     {"unknown-axis", kError, "an axis that the task does not have"},

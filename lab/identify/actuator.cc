@@ -186,6 +186,8 @@ std::string_view name_of(Richness richness) noexcept {
       return "too_slow";
     case Richness::still:
       return "still";
+    case Richness::absurd:
+      return "absurd";
   }
   return "";
 }
@@ -207,6 +209,11 @@ ActuatorEstimate identify_actuator(const ActuatorRecord& record) {
   solve(rows, static_cast<double>(intervals.size()),
         encoder_step(record.torque) / record.nominal_spring, out);
   out.richness = out.condition <= kLargestCondition ? Richness::good : Richness::poor;
+  const auto negative = [](const Estimate& e) { return e.value < -3.0 * e.error; };
+  if (negative(out.spring) || negative(out.rotor) || negative(out.viscous) ||
+      negative(out.coulomb)) {
+    out.richness = Richness::absurd;
+  }
   return out;
 }
 

@@ -40,6 +40,7 @@ enum class Richness {
   poor,      // the parameters' effects resemble each other too much
   too_slow,  // hardly any time between reversals in which the motor moves
   still,     // the motor did not move
+  absurd,    // a spring, inertia or friction is negative by more than its error
 };
 std::string_view name_of(Richness richness) noexcept;
 

@@ -133,8 +133,7 @@ std::string torque_loops_text(const RunIdentity& id) {
     text += fmt::format("{}'{}' of {} joint{}", text.empty() ? "" : ", ", loop.name, loop.joints,
                         loop.joints == 1 ? "" : "s");
   }
-  return fmt::format("  torque loop  {} not used: backend {} applies torques directly\n", text,
-                     id.backend);
+  return fmt::format("  torque loop  {} not used: the actuators are ideal in this world\n", text);
 }
 
 Json torque_loops_json(const RunIdentity& id) {

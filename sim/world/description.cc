@@ -21,6 +21,8 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
   };
   for (const ActuatorSettings::Key& key : world.actuators.elastic_keys) {
     if (world.actuators.model == ActuatorModel::series_elastic) break;
+    // `ideal` on top of a base's elastic actuators takes their imperfections away, too.
+    if (world.actuators.mark.file != key.mark.file) continue;
     diagnostics.error(key.mark, "unsupported",
                       fmt::format("'{}' has no effect on ideal actuators: expected 'model: "
                                   "series_elastic' beside it",

@@ -107,7 +107,7 @@ using WorldSettings = std::vector<std::pair<std::string, std::string>>;
 
 // Loads a world file. Problems are added to diagnostics, those of a setting at `--set world.KEY`;
 // the result is valid only without errors. `search`: folders of sim/worlds/NAME.yaml, after those
-// of the file and above it. Settings are told by the world's name.
+// of the file and above it.
 WorldDescription load_world(const std::string& path, core::Diagnostics& diagnostics,
                             const std::vector<std::string>& search = {},
                             const WorldSettings& settings = {});

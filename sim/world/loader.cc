@@ -342,7 +342,6 @@ WorldDescription load_world(const std::string& path, Diagnostics& diagnostics,
         return WorldLoader(path, problems).load(whole);
       },
       model::prepare_variation, world_folders(core::search_from(path, search)));
-  for (const auto& [key, value] : settings) world.name += fmt::format(" {}={}", key, value);
   return world;
 }
 

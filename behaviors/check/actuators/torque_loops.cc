@@ -222,7 +222,6 @@ class TorqueLoopCheck {
                                         "(and velocity_p of a cascade) above 0; p and i of the "
                                         "robot's own loops are of their type only",
                                         table.name, description.name));
-      return;
     }
     const JointLoop loop(description, context_.behavior.robot.drives, gains);
     if (find_unstable(table, joint, loop, Severity::error, "")) return;

@@ -10,6 +10,7 @@
 #include <set>
 #include <tuple>
 
+#include "behaviors/check/actuators/drives.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/ids.h"
 #include "lab/scenario/loader.h"
@@ -76,7 +77,8 @@ void load(const std::string& path, const std::string& text,
           const std::vector<std::pair<std::string, std::string>>& set,
           core::Diagnostics& diagnostics) {
   if (text.starts_with("robot: 1\n")) {
-    model::load_robot(path, diagnostics);
+    const auto robot = model::load_robot(path, diagnostics);
+    if (!diagnostics.has_errors()) behaviors::check_drives(robot, diagnostics);
   } else if (text.starts_with("world: 1\n")) {
     const auto world = sim::load_world(path, diagnostics);
     if (diagnostics.has_errors()) return;

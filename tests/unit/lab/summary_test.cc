@@ -77,8 +77,8 @@ machine:
   ASSERT_EQ(unused.size(), 2U);
   lab::RunIdentity id = {"b", "hume", "flat", "stub", 1, "", "", unused};
   const std::string line =
-      "  torque loop  'stance' of 6 joints, 'swing' of 3 joints not used: backend stub applies "
-      "torques directly\n";
+      "  torque loop  'stance' of 6 joints, 'swing' of 3 joints not used: the actuators are ideal "
+      "in this world\n";
   EXPECT_NE(lab::summary_text(id, {}).find(line), std::string::npos) << lab::summary_text(id, {});
   const auto json = lab::summary_json(id, {});
   EXPECT_EQ(json["unused_torque_loops"].dump(),

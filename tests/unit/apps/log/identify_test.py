@@ -26,7 +26,7 @@ class Identify(command.Case):
             self.assertAlmostEqual(spring["difference"], spring["value"] / SPRINGS[j] - 1, delta=1e-9)
             self.assertAlmostEqual(joint["rotor_kgm2"]["value"] / ROTORS[j], 1, delta=0.02)
             self.assertAlmostEqual(joint["viscous_Nms_per_rad"]["value"] / 0.5, 1, delta=0.05)
-            self.assertAlmostEqual(joint["coulomb_Nm"]["value"] / drawn["actuators.coulomb_Nm"][j], 1, delta=0.05)
+            self.assertAlmostEqual(joint["coulomb_Nm"]["value"] / drawn["actuators.coulomb"][j], 1, delta=0.05)
             self.assertAlmostEqual(delay * 1500, 1, delta=0.05)
 
     def test_text_names_the_robot_files_values(self):

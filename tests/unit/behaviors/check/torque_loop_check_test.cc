@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <sstream>
 
 #include "behaviors/check/actuators/drives.h"
 #include "behaviors/check/actuators/sampled_torque_loop.h"
@@ -24,6 +25,17 @@ using testing::StartsWith;
 
 constexpr double kStep = 1.0 / 12000.0;                                          // s
 constexpr hal::SeriesElasticParameters kHip{.spring = 360, .rotor = 0.0872756};  // Hume's right hip
+
+// What `check` finds, but for joints whose gains these tables leave at 0.
+template <typename... More>
+std::string physics(const std::string& text, const More&... more) {
+  std::string kept;
+  std::istringstream lines(tests::physics(text, more...));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("no torque at all") == std::string::npos) kept += line + "\n";
+  }
+  return kept;
+}
 
 // Whether an error grows: 1, decays: -1, or neither within the time given: 0.
 int stepped(const TorqueLoopGains& gains, const hal::RateFilters& filters, int steps) {
@@ -236,6 +248,15 @@ TEST(TorqueLoopCheck, ALiveEditThatWouldBeUnstableIsRefused) {
   const auto errors = edited.errors(values);
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_EQ(errors[0].id, "unstable-torque-loop");
+}
+
+// Joints that a table's leg has and its p does not name: p of the robot's loops is of another type.
+TEST(TorqueLoopCheck, AJointThatGetsNoTorqueAtAllIsTold) {
+  EXPECT_EQ(
+      tests::physics(with_table("  t: {p: {right_hip: 20}, velocity_p: 5}\n")),
+      "b.yaml:5:3: warning: torque_loop 't' gives 'right_abduction' no torque at all: expected "
+      "p (and velocity_p of a cascade) above 0; p and i of the robot's own loops are of their "
+      "type only\n");
 }
 
 TEST(TorqueLoopCheck, TheRobotsOwnLoopsAreJudgedWithoutABehavior) {
