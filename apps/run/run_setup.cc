@@ -79,6 +79,7 @@ sim::WorldDescription draw_world(const RunOptions& options, const behaviors::Beh
     variation.spring = declared.spring;
     variation.coulomb = declared.coulomb;
   }
+  if (world.actuators.model == sim::ActuatorModel::ideal) variation.spring = variation.coulomb = {};
   const std::vector<std::string> links = variation.mass.kind == model::Spread::Kind::none
                                              ? std::vector<std::string>()
                                              : model::body_names(behavior.robot.model_path);

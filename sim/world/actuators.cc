@@ -34,8 +34,7 @@ std::optional<double> read_stiffness(const YamlNode& node, Diagnostics& diagnost
 // Factors of the springs, by joint: the world's times what was drawn.
 std::vector<double> spring_factors(const ActuatorSettings& actuators,
                                    const model::RobotDescription& robot, Diagnostics& diagnostics) {
-  std::vector<double> factors =
-      by_joint({actuators.spring, actuators.file}, read_change, robot, diagnostics);
+  std::vector<double> factors = by_joint(actuators.spring, read_change, robot, diagnostics);
   for (std::size_t j = 0; j < factors.size(); ++j) {
     factors[j] += 1.0;
     if (j < actuators.drawn_springs.size()) factors[j] *= actuators.drawn_springs[j];
@@ -60,6 +59,7 @@ void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnosti
   core::check_keys(node, kActuatorsKeys, diagnostics);
   if (const YamlNode* model = node.find("model")) {
     actuators.mark = model->mark;
+    actuators.file = diagnostics.file(model->mark.file);
     const auto choice =
         core::read_choice(*model, kActuatorModels, diagnostics, "an actuator model");
     if (choice) actuators.model = static_cast<ActuatorModel>(*choice);
@@ -79,10 +79,10 @@ void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnosti
   read("coulomb", core::kTorque, kAny, actuators.coulomb);
   read("motor_resolution", core::kNone, 1.0, actuators.motor_resolution, "an angle");
   read("deflection_resolution", core::kNone, 1.0, actuators.deflection_resolution, "an angle");
-  const auto keep = [&](const char* key, ReadValue read_one, const char* expected, YamlNode& out) {
+  const auto keep = [&](const char* key, ReadValue read_one, const char* expected, ByJoint& out) {
     const YamlNode* const value = node.find(key);
     if (value == nullptr) return;
-    out = *value;
+    out = {*value, diagnostics.file(value->mark.file)};
     actuators.elastic_keys.push_back({key, value->mark});
     check_by_joint(*value, read_one, expected, diagnostics);
   };
@@ -119,7 +119,7 @@ void check_actuators(const ActuatorSettings& actuators, const model::RobotDescri
                     robot.drives.rate, robot.name, robot.rate_hz() * steps_per_tick));
   }
   spring_factors(actuators, robot, diagnostics);
-  by_joint({actuators.flexible, actuators.file}, read_stiffness, robot, diagnostics);
+  by_joint(actuators.flexible, read_stiffness, robot, diagnostics);
 }
 
 hal::DriveSettings drive_settings(const ActuatorSettings& actuators,
@@ -128,8 +128,7 @@ hal::DriveSettings drive_settings(const ActuatorSettings& actuators,
   check_actuators(actuators, robot, plant_steps, problems);
   if (problems.has_errors()) throw std::runtime_error(problems.all().front().text);
   const std::vector<double> factors = spring_factors(actuators, robot, problems);
-  const std::vector<double> links =
-      by_joint({actuators.flexible, actuators.file}, read_stiffness, robot, problems);
+  const std::vector<double> links = by_joint(actuators.flexible, read_stiffness, robot, problems);
   hal::DriveSettings settings;
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const model::JointDescription& joint = robot.joints[j];

@@ -9,6 +9,7 @@
 #include "core/yaml/yaml.h"
 #include "hal/actuators/drive.h"
 #include "model/robot/description.h"
+#include "sim/world/by_joint.h"
 
 namespace footfall::sim {
 
@@ -23,10 +24,10 @@ struct ActuatorSettings {
   double coulomb = 0.0;                // N m, of every rotor
   double motor_resolution = 0.0;       // rad, of the motors' encoders
   double deflection_resolution = 0.0;  // rad, of the springs' encoders
-  core::YamlNode spring;               // relative change of springs: for all, or by joint
-  core::YamlNode flexible;             // N m/rad, stiffness of links: for all, or by joint
+  ByJoint spring;                      // relative change of the true springs
+  ByJoint flexible;                    // N m/rad, stiffness of links
   core::Mark mark;                     // position of `model`, else of the section
-  std::string file;                    // of these positions
+  std::string file;                    // of that position
   struct Key {
     std::string name;
     core::Mark mark;

@@ -55,6 +55,8 @@ void check_actuators(const WorldDescription& world, const model::RobotDescriptio
   check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
   axis_tilts(world, robot, diagnostics);
   if (world.actuators.model != ActuatorModel::ideal || !world.variation.draws_actuators()) return;
+  // `ideal` on top of a base's elastic actuators takes their draws away, too.
+  if (world.actuators.file != world.variation.actuators.file) return;
   core::Mark mark = world.variation.actuators.mark;
   mark.file = diagnostics.add_file(world.variation.actuators.file);
   diagnostics.error(mark, "actuators",

@@ -311,6 +311,7 @@ void lay_over(YamlNode& root, const std::string& key, const std::string& value,
               Diagnostics& problems) {
   if (root.is_null()) return;
   YamlNode own = core::load_yaml_text(value, "--set world." + key, problems);
+  if (own.is_null()) return;  // told
   const core::Mark mark = own.mark;
   std::vector<std::string> parts = core::split_dots(key);
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {

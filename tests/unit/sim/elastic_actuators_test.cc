@@ -133,6 +133,32 @@ TEST_F(ElasticActuators, ASpringIsNotClampedAtTheMotorsLimitInTheModel) {
   EXPECT_GT(most, 50.0);
 }
 
+// The joint's encoder is before the link that bends: it shows the torque over the link's stiffness
+// more than where the link's end is, and the drive measures what its own spring carries.
+TEST_F(ElasticActuators, AFlexibleLinkBendsBehindTheJointsEncoder) {
+  start(elastic_world(", flexible: {right_knee: 500 Nm/rad}"));
+  run(2.0, 40);
+  const double torque = backend->drive()->actuator(kKneeJoint).spring_torque();
+  EXPECT_GT(torque, 1.0);
+  EXPECT_NEAR(sensors.q[kKneeJoint] - backend->data()->qpos[7 + kKneeJoint], torque / 500.0, 2e-4);
+  EXPECT_NEAR(sensors.tau[kKneeJoint], torque, 0.02);
+  const double together = 415.0 * 500.0 / 915.0;
+  EXPECT_DOUBLE_EQ(backend->drive()->actuator(kKneeJoint).parameters().spring, together);
+  EXPECT_EQ(sensors.q[0], backend->data()->qpos[7]);
+}
+
+TEST_F(ElasticActuators, ATiltedAxisTurnsWhatHangsOnItInTheSimulationOnly) {
+  sim::WorldDescription world = elastic_world();
+  core::Diagnostics diagnostics;
+  world.axis_tilts.node = core::load_yaml_text("{right_hip: 0.06}", "w", diagnostics);
+  start(world);
+  const mjModel* m = backend->model();
+  const double* quat = m->body_quat + 4 * backend->find_body("right_thigh");
+  EXPECT_NEAR(quat[0], std::cos(0.03), 1e-12);
+  EXPECT_NEAR(quat[3], std::sin(0.03), 1e-12);
+  EXPECT_EQ(m->body_quat[4 * backend->find_body("left_thigh")], 1.0);
+}
+
 TEST_F(ElasticActuators, ASafeStopReleasesTheSprings) {
   start(elastic_world());
   run(5.0, 60);
