@@ -54,12 +54,14 @@ SeriesElasticDrive::SeriesElasticDrive(DriveSettings settings) : settings_(std::
   const auto make = [this](int delay, std::size_t values) {
     Delay out;
     out.length = static_cast<std::size_t>(delay) + 1;
-    out.values.assign(out.length * values * joints_.size(), 0.0);
+    out.row = values * joints_.size();
+    out.values.assign(out.length * out.row, 0.0);
     return out;
   };
   commands_ = make(settings_.command_delay, 1);
   measurements_ = make(settings_.measurement_delay, kMeasured);
   commanded_.assign(joints_.size(), 0.0);
+  per_step_ = 1.0 / settings_.step;
   motor_share_ = filter_share(settings_.filters.motor, settings_.step);
   spring_share_ = filter_share(settings_.filters.spring, settings_.step);
 }
@@ -110,10 +112,9 @@ void SeriesElasticDrive::place(std::span<const double> angles) noexcept {
 
 // The value of `length` - 1 steps ago; this one takes its place.
 double SeriesElasticDrive::through(Delay& delay, std::size_t index, double value) const noexcept {
-  const std::size_t row = delay.values.size() / delay.length;
-  delay.values[delay.head * row + index] = value;
-  const std::size_t oldest = (delay.head + 1) % delay.length;
-  return delay.values[oldest * row + index];
+  if (delay.length == 1) return value;
+  delay.values[delay.head * delay.row + index] = value;
+  return delay.values[delay.next() * delay.row + index];
 }
 
 TorqueLoopInput SeriesElasticDrive::sense(Joint& joint, double joint_rate) const noexcept {
@@ -122,7 +123,7 @@ TorqueLoopInput SeriesElasticDrive::sense(Joint& joint, double joint_rate) const
       counted(joint.spring_share * state.deflection, settings_.deflection_resolution);
   const double angle = counted(joint.motor_angle, settings_.motor_resolution);
   const auto follow = [this](double& rate, double share, double now, double before, double exact) {
-    rate = share > 0.0 ? rate + share * ((now - before) / settings_.step - rate) : exact;
+    rate = share > 0.0 ? rate + share * ((now - before) * per_step_ - rate) : exact;
   };
   follow(joint.rate, motor_share_, angle, joint.counted, state.rate);
   follow(joint.spring_rate, spring_share_, stretched, joint.stretched,
@@ -158,11 +159,12 @@ void SeriesElasticDrive::advance(std::span<const double> joint_rates,
   for (std::size_t j = 0; j < joints_.size(); ++j) torques[j] = 0.0;
   for (int k = 0; k < settings_.steps; ++k) {
     for (std::size_t j = 0; j < joints_.size(); ++j) {
-      torques[j] += step(j, joint_rates[j]) / settings_.steps;
+      torques[j] += step(j, joint_rates[j]);
     }
-    commands_.head = (commands_.head + 1) % commands_.length;
-    measurements_.head = (measurements_.head + 1) % measurements_.length;
+    commands_.head = commands_.next();
+    measurements_.head = measurements_.next();
   }
+  for (std::size_t j = 0; j < joints_.size(); ++j) torques[j] /= settings_.steps;
   unsampled_ += settings_.steps;
 }
 

@@ -98,7 +98,9 @@ class SeriesElasticDrive {
   // A ring of some values a joint and step.
   struct Delay {
     std::vector<double> values;
-    std::size_t length = 1, head = 0;
+    std::size_t row = 0;               // values of a step
+    std::size_t length = 1, head = 0;  // steps
+    std::size_t next() const noexcept { return head + 1 == length ? 0 : head + 1; }
   };
   double through(Delay& delay, std::size_t value_index, double value) const noexcept;
   double step(std::size_t joint, double joint_rate) noexcept;
@@ -110,6 +112,7 @@ class SeriesElasticDrive {
   std::vector<double> commanded_;
   Delay commands_, measurements_;
   double motor_share_ = 0.0, spring_share_ = 0.0;  // filter_share()
+  double per_step_ = 0.0;                          // 1/step
   int unsampled_ = 0;                              // steps since the last sample()
 };
 

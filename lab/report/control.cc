@@ -174,16 +174,17 @@ std::string joint_figures(const Log& log, const std::string& joint) {
 std::string loop_table(const Log& log, const nlohmann::json& loops) {
   std::string out =
       "<table class=\"keys\"><tr><th>joint</th><th>gains</th><th>bandwidth, output locked</th>"
-      "<th>passivity margin</th><th>torque error, rms</th><th>motor, peak</th></tr>";
+      "<th>passivity (margin)</th><th>torque error, rms</th><th>motor, peak</th></tr>";
   std::string before;
   for (const auto& loop : loops) {
     const std::string joint = loop.value("joint", "");
     const double margin = loop.value("passivity_margin", 0.0);
-    out += fmt::format("<tr><td>{}</td><td>{} ({})</td><td>{:.1f} Hz</td><td>{:.2f}{}</td>{}</tr>",
-                       core::escape_html(spaced(joint)), core::escape_html(loop.value("table", "")),
-                       core::escape_html(loop.value("type", "")), loop.value("bandwidth_Hz", 0.0),
-                       margin, margin < 0.0 ? ", not passive" : "",
-                       joint == before ? "<td></td><td></td>" : joint_figures(log, joint));
+    out +=
+        fmt::format("<tr><td>{}</td><td>{} ({})</td><td>{:.1f} Hz</td><td>{} ({:.2f})</td>{}</tr>",
+                    core::escape_html(spaced(joint)), core::escape_html(loop.value("table", "")),
+                    core::escape_html(loop.value("type", "")), loop.value("bandwidth_Hz", 0.0),
+                    margin < 0.0 ? "not passive" : "passive", margin,
+                    joint == before ? "<td></td><td></td>" : joint_figures(log, joint));
     before = joint;
   }
   return out + "</table>";

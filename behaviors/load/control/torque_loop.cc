@@ -51,6 +51,12 @@ class TorqueLoopLoader {
     for (const TorqueLoopKey& key : kTorqueLoopGainKeys) {  // those that no table needed
       if (known_[index_of(key)][0].read || known_[index_of(key)][1].read) continue;
       range_of(key, key.of_cascade ? LoopType::cascade : LoopType::direct);
+      if (const YamlNode* range = ranges_ == nullptr ? nullptr : ranges_->find(key.name)) {
+        context_.absence(range->mark, "unused",
+                         fmt::format("the range of '{0}' has no effect: no torque_loop table has "
+                                     "'{0}'",
+                                     key.name));
+      }
     }
   }
 
