@@ -190,19 +190,7 @@ bool MujocoBackend::read(hal::Sensors& s) noexcept {
     s.tau[j] = data_->actuator_force[actuator_[j]];
   }
   s.motor_saturated = false;
-  if (drive_) {
-    drive_->sample();
-    for (std::size_t j = 0; j < qpos_.size(); ++j) {
-      const hal::DriveMeasurement& measured = drive_->measured(static_cast<int>(j));
-      const hal::LinkBending bent = drive_->bending(static_cast<int>(j), s.qd[j]);
-      s.q[j] += bent.angle;
-      s.qd[j] += bent.rate;
-      s.tau[j] = measured.torque;
-      s.motor[j] = measured.motor_angle;
-      s.motor_torque[j] = measured.motor_torque;
-      s.motor_saturated |= measured.saturated;
-    }
-  }
+  if (drive_) drive_->read(s);
   s.has_truth = true;
   for (std::size_t k = 0; k < 3; ++k) {
     s.p_WB[k] = data_->qpos[k];

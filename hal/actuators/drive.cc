@@ -179,6 +179,21 @@ void SeriesElasticDrive::sample() noexcept {
   unsampled_ = 0;
 }
 
+void SeriesElasticDrive::read(Sensors& sensors) noexcept {
+  sample();
+  sensors.motor_saturated = false;
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const DriveMeasurement& measured = joints_[j].measured;
+    const LinkBending bent = bending(static_cast<int>(j), sensors.qd[j]);
+    sensors.q[j] += bent.angle;
+    sensors.qd[j] += bent.rate;
+    sensors.tau[j] = measured.torque;
+    sensors.motor[j] = measured.motor_angle;
+    sensors.motor_torque[j] = measured.motor_torque;
+    sensors.motor_saturated |= measured.saturated;
+  }
+}
+
 const DriveMeasurement& SeriesElasticDrive::measured(int joint) const noexcept {
   return joints_[at(joint)].measured;
 }

@@ -9,6 +9,7 @@
 
 #include "hal/actuators/series_elastic.h"
 #include "hal/actuators/torque_loop.h"
+#include "hal/sensor_fields.h"
 
 namespace footfall::hal {
 
@@ -71,6 +72,10 @@ class SeriesElasticDrive {
   void advance(std::span<const double> joint_rates, std::span<double> torques) noexcept;
   // Ends the time of which measured() gives means; without an advance() since the last, nothing.
   void sample() noexcept;
+
+  // What the servo reads of all joints, after sample(): `sensors` has where the links' ends are,
+  // and gets what the encoders show.
+  void read(Sensors& sensors) noexcept;
 
   const DriveMeasurement& measured(int joint) const noexcept;
   // At the joint velocity given, rad/s.

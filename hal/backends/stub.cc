@@ -69,7 +69,7 @@ bool StubBackend::read(Sensors& sensors) noexcept {
   std::copy(q_.begin(), q_.end(), sensors.q.begin());
   std::copy(qd_.begin(), qd_.end(), sensors.qd.begin());
   std::copy(tau_.begin(), tau_.end(), sensors.tau.begin());
-  if (drive_) sense_actuators(sensors);
+  if (drive_) drive_->read(sensors);
   for (int c = 0; c < settings_.contacts; ++c) {
     sensors.contact[static_cast<std::size_t>(c)] = is_closed(c, time);
   }
@@ -79,21 +79,6 @@ bool StubBackend::read(Sensors& sensors) noexcept {
   sensors.v_WB = {};
   sensors.w_WB_B = {};
   return true;
-}
-
-void StubBackend::sense_actuators(Sensors& sensors) noexcept {
-  drive_->sample();
-  sensors.motor_saturated = false;
-  for (std::size_t j = 0; j < q_.size(); ++j) {
-    const DriveMeasurement& measured = drive_->measured(static_cast<int>(j));
-    const LinkBending bent = drive_->bending(static_cast<int>(j), qd_[j]);
-    sensors.q[j] += bent.angle;
-    sensors.qd[j] += bent.rate;
-    sensors.tau[j] = measured.torque;
-    sensors.motor[j] = measured.motor_angle;
-    sensors.motor_torque[j] = measured.motor_torque;
-    sensors.motor_saturated |= measured.saturated;
-  }
 }
 
 void StubBackend::write(const Commands& commands) noexcept {

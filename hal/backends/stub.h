@@ -50,7 +50,6 @@ class StubBackend final : public Hardware {
  private:
   bool is_closed(int contact, double time) const noexcept;
   void move(std::span<const double> torques, double time) noexcept;
-  void sense_actuators(Sensors& sensors) noexcept;
 
   StubSettings settings_;
   std::vector<double> q_, qd_, tau_;
