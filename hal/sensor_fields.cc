@@ -35,7 +35,8 @@ static_assert(member_count<Sensors>() ==
               "each member of Sensors but time_ns has one row in a table of sensor_fields.h");
 static_assert(member_count<Commands>() == kRowCount<decltype(kCommandFields)>,
               "each member of Commands has one row in the table of sensor_fields.h");
-static_assert(core::kMaxJoints != core::kMaxContacts,
-              "arrays by joint and by contact differ in length");
+static_assert(core::kMaxJoints != core::kMaxContacts && core::kMaxJoints != core::kMaxMarkers &&
+                  core::kMaxContacts != core::kMaxMarkers,
+              "arrays by joint, by contact and by marker differ in length");
 
 }  // namespace footfall::hal

@@ -31,13 +31,24 @@ struct Sensors {
   std::array<double, core::kMaxJoints> motor_torque{};  // N m, mean since the last tick
 
   bool imu_fresh = true;    // new IMU data arrived
-  bool mocap_fresh = true;  // new motion capture data arrived
+  bool mocap_fresh = true;  // a frame of motion capture arrived: the three members below are new
+  std::array<std::array<double, 3>, core::kMaxMarkers> marker{};  // m, world
+  std::array<bool, core::kMaxMarkers> marker_seen{};              // false: hidden, position unknown
+  double mocap_age = 0.0;                                         // s, from exposure to this tick
 
   bool has_truth = false;                  // a simulator provides the base's true state below
   std::array<double, 3> p_WB{};            // base origin, m, world
   std::array<double, 4> q_WB{1, 0, 0, 0};  // base orientation, w x y z
   std::array<double, 3> v_WB{};            // velocity of the base origin, m/s, world
   std::array<double, 3> w_WB_B{};          // angular velocity, rad/s, base frame
+  // The truth where sensors have errors: then `sensor_truth` is set.
+  bool sensor_truth = false;
+  std::array<double, core::kMaxJoints> true_q{};    // rad
+  std::array<double, core::kMaxJoints> true_qd{};   // rad/s
+  std::array<double, 3> true_com{};                 // m, world
+  std::array<double, 3> true_com_velocity{};        // m/s, world
+  std::array<double, 3> true_gyro_bias{};           // rad/s, IMU frame
+  std::array<double, 3> true_accelerometer_bias{};  // m/s^2, IMU frame
 
   bool body_contact = false;     // a body other than a declared contact touches (simulator)
   bool backend_fault = false;    // the backend raised a warning or reset itself (simulator)
@@ -61,8 +72,8 @@ enum class SensorGroup : std::uint8_t {
   count,
 };
 
-// One number, or an array of them: by joint (kMaxJoints), by contact (kMaxContacts), x y z (3), a
-// unit quaternion w x y z (4), or an array of such arrays.
+// One number, or an array of them: by joint (kMaxJoints), by contact (kMaxContacts), by marker
+// (kMaxMarkers), x y z (3), a unit quaternion w x y z (4), or an array of such arrays.
 template <typename Owner, typename Value>
 struct NumberField {
   Value Owner::*member;
@@ -70,13 +81,16 @@ struct NumberField {
   std::string_view unit;  // SI
   SensorGroup group = SensorGroup::backend;
   std::string_view rate = {};  // name of the field that is its derivative; empty: none
+  // Only estimators need it: it has columns in the log where the state is estimated, or sensors
+  // have errors.
+  bool estimation = false;
 };
 
-// A truth value, or one by contact.
+// A truth value, or one by contact or marker.
 template <typename Value>
 struct FlagField {
   Value Sensors::*member;
-  std::uint64_t bit;  // in the column `flags`; that of contact c is bit << c
+  std::uint64_t bit;  // in the column `flags`; that of contact or marker k is bit << k
   std::string_view doc;
   SensorGroup group;
   bool validity = false;  // false while its group fails; else it keeps the last value, too
@@ -99,6 +113,20 @@ inline constexpr std::tuple kSensorFields{
     NumberField{&Sensors::w_WB_B, "w_WB_B", "rad/s", SensorGroup::truth},
     NumberField{&Sensors::motor, "motor", "rad", SensorGroup::joints},
     NumberField{&Sensors::motor_torque, "motor_torque", "N m", SensorGroup::joints},
+    NumberField{&Sensors::marker, "marker", "m", SensorGroup::mocap, {}, true},
+    NumberField{&Sensors::mocap_age, "mocap_age", "s", SensorGroup::mocap, {}, true},
+    NumberField{&Sensors::true_qd, "true_qd", "rad/s", SensorGroup::truth, {}, true},
+    NumberField{&Sensors::true_q, "true_q", "rad", SensorGroup::truth, "true_qd", true},
+    NumberField{
+        &Sensors::true_com_velocity, "true_com_velocity", "m/s", SensorGroup::truth, {}, true},
+    NumberField{&Sensors::true_com, "true_com", "m", SensorGroup::truth, "true_com_velocity", true},
+    NumberField{&Sensors::true_gyro_bias, "true_gyro_bias", "rad/s", SensorGroup::truth, {}, true},
+    NumberField{&Sensors::true_accelerometer_bias,
+                "true_accelerometer_bias",
+                "m/s^2",
+                SensorGroup::truth,
+                {},
+                true},
 };
 // Bit 1 is of the read as a whole: something new arrived.
 inline constexpr std::uint64_t kFreshBit = 1;
@@ -110,7 +138,11 @@ inline constexpr std::tuple kFlagFields{
     FlagField{&Sensors::mocap_fresh, 32, "motion capture's data are new", SensorGroup::mocap, true},
     FlagField{&Sensors::motor_saturated, 64, "a motor gave less than its loop asked for",
               SensorGroup::joints},
+    FlagField{&Sensors::sensor_truth, 128, "sensors have errors; the truth is known",
+              SensorGroup::truth, true},
     FlagField{&Sensors::contact, 256, "contact c is closed", SensorGroup::contacts},
+    FlagField{&Sensors::marker_seen, std::uint64_t{1} << 40U, "marker m is seen",
+              SensorGroup::mocap},
 };
 
 // Calls visit(field) for each row of a table.

@@ -137,6 +137,7 @@ ControlModel::ControlModel(const RobotDescription& robot, const ModelDeviation& 
   mass_ = m->body_subtreemass[base_body_];
   contact_count_ = static_cast<int>(robot.contacts.size());
   place_points(robot);
+  mounts_ = sensor_mounts(*m, robot);
   const auto cells = static_cast<std::size_t>(3 * nv_);
   for (Kinematics3& p : points_) p.jacobian.assign(cells, 0.0);
   for (FrameRotation& f : frames_) f.angular.jacobian.assign(cells, 0.0);

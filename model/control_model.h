@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/robot/description.h"
+#include "model/sensor_mounts.h"
 #include "model/state.h"
 #include "model/tree_factor.h"
 
@@ -53,6 +54,7 @@ class ControlModel {
   int contact_count() const noexcept { return contact_count_; }
   double mass() const noexcept { return mass_; }        // kg
   double gravity() const noexcept { return gravity_; }  // m/s^2, downwards
+  const SensorMounts& mounts() const noexcept { return mounts_; }
 
   // Everything below is of the state given last. No allocation. `normal_up`: contact points lie at
   // centre - radius * world z.
@@ -117,6 +119,7 @@ class ControlModel {
                     std::array<double, 3>& bias) const noexcept;
 
   std::unique_ptr<Mujoco> mj_;
+  SensorMounts mounts_;
   int nv_ = 0;
   int contact_count_ = 0;
   int base_body_ = 0;

@@ -9,6 +9,7 @@
 
 #include "behaviors/compiled/chart.h"
 #include "behaviors/compiled/control_spec.h"
+#include "behaviors/compiled/estimator_spec.h"
 #include "behaviors/compiled/script_limits.h"
 #include "behaviors/compiled/signals.h"
 #include "behaviors/expression/parameter.h"
@@ -82,6 +83,7 @@ struct Behavior : Chart {
   std::vector<InternalSpec> internals;
   std::vector<TransitionSpec> contact_transitions;
   std::vector<TorqueLoopTable> torque_loops;
+  EstimatorSpec estimator;
   std::vector<std::string> stacks;  // names, as written
 
   std::vector<TaskInstance> task_instances;

@@ -1,22 +1,19 @@
-// The estimators by name.
+// The estimators by type.
 #pragma once
 
 #include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
 
+#include "behaviors/compiled/estimator_spec.h"
 #include "engine/estimators/estimator.h"
+#include "model/control_model.h"
 #include "model/robot/description.h"
 
 namespace footfall::engine {
 
-inline constexpr std::string_view kDefaultEstimator = "true_state";
-
-// A new estimator for this robot. Throws std::runtime_error with one clear sentence if none has
-// the name.
-std::unique_ptr<Estimator> make_estimator(std::string_view name,
-                                          const model::RobotDescription& robot);
-std::vector<std::string> estimator_names();
+// A new estimator for this robot. `model` gives where its sensors are; not kept. Throws
+// std::runtime_error with one clear sentence if the robot lacks a sensor that it needs.
+std::unique_ptr<Estimator> make_estimator(const behaviors::EstimatorSpec& spec,
+                                          const model::RobotDescription& robot,
+                                          const model::ControlModel& model);
 
 }  // namespace footfall::engine

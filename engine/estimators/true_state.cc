@@ -5,14 +5,18 @@
 
 namespace footfall::engine {
 
-bool TrueState::estimate(const hal::Sensors& sensors, model::State& state) noexcept {
+bool TrueState::estimate(const EstimatorInput& input, Estimate& estimate) noexcept {
+  const hal::Sensors& sensors = input.sensors;
   if (!sensors.has_truth) return false;
+  model::State& state = estimate.state;
   state.p_WB = sensors.p_WB;
   state.q_WB = sensors.q_WB;
   state.v_WB = sensors.v_WB;
   state.w_WB_B = sensors.w_WB_B;
-  std::copy_n(sensors.q.begin(), joints_, state.q.begin());
-  std::copy_n(sensors.qd.begin(), joints_, state.qd.begin());
+  const bool exact = !sensors.sensor_truth;
+  std::copy_n((exact ? sensors.q : sensors.true_q).begin(), joints_, state.q.begin());
+  std::copy_n((exact ? sensors.qd : sensors.true_qd).begin(), joints_, state.qd.begin());
+  std::copy_n(sensors.contact.begin(), contacts_, estimate.contact.begin());
   return true;
 }
 

@@ -8,11 +8,12 @@ namespace footfall::engine {
 
 class TrueState final : public Estimator {
  public:
-  explicit TrueState(const model::RobotDescription& robot) : joints_(robot.joint_count()) {}
-  bool estimate(const hal::Sensors& sensors, model::State& state) noexcept override;
+  explicit TrueState(const model::RobotDescription& robot)
+      : joints_(robot.joint_count()), contacts_(static_cast<int>(robot.contacts.size())) {}
+  bool estimate(const EstimatorInput& input, Estimate& estimate) noexcept override;
 
  private:
-  int joints_;
+  int joints_, contacts_;
 };
 
 }  // namespace footfall::engine

@@ -31,6 +31,7 @@ void HardwareLink::tell_support(int control) noexcept {
     if (!behaviors::law_holds(behavior_, control, c)) continue;
     support |= std::uint64_t{1} << static_cast<unsigned>(c);
   }
+  support_ = support;
   hardware_.set_support(support);
 }
 

@@ -18,6 +18,8 @@ class HardwareLink {
   void tell(const behaviors::Machine& machine) noexcept;
   // The hardware may have been told something else meanwhile, by another loop.
   void forget() noexcept;
+  // Contacts told last: bit c of contact c; all of them before the first tick.
+  std::uint64_t support() const noexcept { return support_; }
 
  private:
   void tell_support(int control) noexcept;
@@ -25,7 +27,8 @@ class HardwareLink {
 
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
-  bool has_loops_;                          // of gains that a behavior sets
+  bool has_loops_;  // of gains that a behavior sets
+  std::uint64_t support_ = ~std::uint64_t{0};
   int control_ = -1;                        // index of the law that was told; -1: none yet
   std::vector<hal::TorqueLoopGains> told_;  // by joint
   bool told_gains_ = false;

@@ -42,7 +42,7 @@ std::size_t parameter_bytes(const LogHeader& header) {
 
 LogEncoder::LogEncoder(const std::string& path, const core::SignalTable& table,
                        const LogHeader& header, int batch)
-    : layout_(header.joints, header.contacts),
+    : layout_(header.names),
       signals_(table.size()),
       batch_(batch),
       rate_mhz_(header.rate_mhz),
@@ -72,8 +72,10 @@ void LogEncoder::write_head(const core::SignalTable& table, const LogHeader& hea
   mcap_.add_metadata("run", header.run);
   mcap_.add_metadata("signals", {{"signals", signals_json(table)}});
   mcap_.add_metadata("columns", {{"columns", core::json_text(layout_.names())},
-                                 {"joints", core::json_text(header.joints)},
-                                 {"contacts", core::json_text(header.contacts)}});
+                                 {"joints", core::json_text(header.names.joints)},
+                                 {"contacts", core::json_text(header.names.contacts)},
+                                 {"markers", core::json_text(header.names.markers)},
+                                 {"estimation", header.names.estimation ? "true" : "false"}});
   mcap_.add_metadata("events", {{"events", core::json_text(header.events)}});
   mcap_.add_metadata("setup", {{"setup", header.setup},
                                {"rate_mhz", std::to_string(header.rate_mhz)},

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/signal_table.h"
+#include "engine/tick/input_row.h"
 #include "engine/tick/input_trace.h"
 #include "hal/hardware.h"
 
@@ -41,8 +42,8 @@ struct LogHeader {
   std::vector<std::string> events;  // names, by event id
   std::vector<LogFile> files;       // attachments
   std::vector<LogParameter> parameters;
-  std::vector<double> values;  // initial parameter values, by slot
-  std::vector<std::string> joints, contacts;
+  std::vector<double> values;         // initial parameter values, by slot
+  InputNames names;                   // of the inputs' columns
   std::int64_t rate_mhz = 1'000'000;  // ticks per second, in millihertz
   int row_every = 6;     // ticks between rows of derived signals, except around highlights
   bool lockstep = true;  // the tick waits for the log; else it is dropped, event `gap` counts

@@ -1,9 +1,12 @@
 // The tick; see control_loop.h.
 #include "engine/tick/control_loop.h"
 
+#include <algorithm>
+#include <span>
 #include <stdexcept>
 
 #include "behaviors/compiled/control_set.h"
+#include "core/index.h"
 
 namespace footfall::engine {
 
@@ -16,7 +19,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       model_(behavior.robot, settings.deviation),
       machine_(std::make_unique<behaviors::Machine>(behavior, signals_, &model_)),
       edits_(behavior),
-      estimator_(make_estimator(settings.estimator, behavior.robot)),
+      estimator_(make_estimator(behavior.estimator, behavior.robot, model_)),
       controller_(model_, behavior.robot.torque_limits(), behaviors::controller_sizes(behavior),
                   period_),
       ranks_(behavior, model_),
@@ -32,15 +35,26 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
 void ControlLoop::start() {
   hardware_.start();
   sense();
-  if (!estimator_->estimate(sensors_, estimate_)) {
+  std::copy_n(sensors_.q.begin(), model_.joint_count(), estimate_.state.q.begin());
+  model_.update(estimate_.state);
+  if (!estimate_state()) {
     throw std::runtime_error("no state at the start: the backend '" + hardware_.name() +
                              "' does not tell where the base is");
   }
-  model_.update(estimate_);
-  writer_.write_measured(time(), model_, sensors_);
+  model_.update(estimate_.state);
+  writer_.write_measured(time(), model_, sensors_, estimate_);
   writer_.leave_gaps();
   machine_->start();
   outside_.start(*machine_);
+}
+
+bool ControlLoop::estimate_state() noexcept {
+  const behaviors::EstimatorSpec& spec = behavior_.estimator;
+  const auto parameters = machine_->parameters();
+  return estimator_->estimate(
+      {sensors_, model_, link_.support(),
+       std::span<const double>(parameters).subspan(at(spec.first_slot), at(spec.slots))},
+      estimate_);
 }
 
 LoopState ControlLoop::tick() noexcept {
@@ -59,10 +73,11 @@ bool ControlLoop::sense() noexcept {
 void ControlLoop::compute() noexcept {
   faults_.begin_tick();
   edits_.apply(tick_, *machine_);
-  const bool estimated = estimator_->estimate(sensors_, estimate_);
-  model_.update(estimate_);
-  writer_.write_measured(time(), model_, sensors_);
-  faults_.take(safety_.check_state(sensors_, {fresh_, estimated, machine_->stepping()}, model_),
+  const bool estimated = estimate_state();
+  model_.update(estimate_.state);
+  writer_.write_measured(time(), model_, sensors_, estimate_);
+  faults_.take(safety_.check_state(
+                   sensors_, {fresh_, estimated, machine_->stepping(), estimate_.contact}, model_),
                *machine_);
   faults_.take_late(outside_.deliver(tick_, *machine_, edits_.moved() || safety_.held_back()),
                     *machine_);
@@ -71,7 +86,8 @@ void ControlLoop::compute() noexcept {
   faults_.take(outside_.post(tick_, *machine_, signals_, time()), *machine_);
   controller_.compute(machine_->control(), tick_, sensors_.tau.data(), commands_.tau.data());
   faults_.take(ranks_.check(machine_->control_spec(), controller_.result()), *machine_);
-  faults_.take(swings_.check(machine_->control_spec(), sensors_, machine_->stepping()), *machine_);
+  faults_.take(swings_.check(machine_->control_spec(), estimate_.contact, machine_->stepping()),
+               *machine_);
   faults_.take(safety_.filter(commands_, outside_.limit_steps()), *machine_);
   writer_.write_control(*machine_, controller_.result(), commands_, safety_.torque_step(),
                         faults_.counters());

@@ -66,6 +66,7 @@ class ControlLoop {
   const core::SignalTable& signals() const noexcept { return signals_; }
   const hal::Sensors& sensors() const noexcept { return sensors_; }
   const hal::Commands& commands() const noexcept { return commands_; }
+  const Estimate& estimate() const noexcept { return estimate_; }
   const core::FaultCounters& faults() const noexcept { return faults_.counters(); }
   // Where a fault appeared last, and where it was worst; joint -1: it is no joint's, or none yet.
   const FaultPlace& last_place(core::Fault fault) const noexcept {
@@ -108,6 +109,8 @@ class ControlLoop {
   void safe_stop() noexcept;
 
  private:
+  bool estimate_state() noexcept;
+
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
   double period_;
@@ -127,7 +130,7 @@ class ControlLoop {
   HardwareLink link_;
   hal::Sensors sensors_;
   hal::Commands commands_;
-  model::State estimate_;
+  Estimate estimate_;
   bool fresh_ = true;  // the last sense() read something new
 };
 

@@ -1,4 +1,6 @@
-// Has the robot fallen? Judged from one tick's sensors and state; no memory, no clock.
+// Has the robot fallen? Judged from one tick's sensors and state; no memory, no clock. Where the
+// state is estimated and a simulator knows the truth, the worse of the two decides: an estimate
+// does not hide a fall, and a robot acts on its estimate.
 #pragma once
 
 #include <algorithm>

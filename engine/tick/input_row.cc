@@ -10,55 +10,68 @@ namespace footfall::engine {
 namespace {
 
 // How many entries of an array the robot has.
-template <std::size_t size>
-std::size_t used(std::size_t joints, std::size_t contacts) noexcept {
-  return size == core::kMaxJoints ? joints : size == core::kMaxContacts ? contacts : size;
-}
+struct Sizes {
+  std::size_t joints, contacts, markers;
+  constexpr std::size_t of(std::size_t capacity) const noexcept {
+    switch (capacity) {
+      case core::kMaxJoints:
+        return joints;
+      case core::kMaxContacts:
+        return contacts;
+      case core::kMaxMarkers:
+        return markers;
+      default:
+        return capacity;
+    }
+  }
+};
 
 // Calls visit(number) for each number of a field, in the order of its columns.
 template <typename Value, typename Visit>
-void visit_numbers(Value& value, std::size_t joints, std::size_t contacts, Visit& visit) {
+void visit_numbers(Value& value, const Sizes& sizes, Visit& visit) {
   if constexpr (std::is_same_v<std::remove_const_t<Value>, double>) {
     visit(value);
   } else {
-    const std::size_t count =
-        used<std::tuple_size<std::remove_const_t<Value>>::value>(joints, contacts);
-    for (std::size_t k = 0; k < count; ++k) visit_numbers(value[k], joints, contacts, visit);
+    const std::size_t count = sizes.of(std::tuple_size<std::remove_const_t<Value>>::value);
+    for (std::size_t k = 0; k < count; ++k) visit_numbers(value[k], sizes, visit);
   }
 }
 
 // The names of a field's columns.
 template <typename Value>
-void name_columns(const std::string& stem, const std::vector<std::string>& joints,
-                  const std::vector<std::string>& contacts, std::vector<std::string>& names) {
+void name_columns(const std::string& stem, const InputNames& of, std::vector<std::string>& names) {
   if constexpr (std::is_same_v<Value, double>) {
     names.push_back(stem);
   } else {
     constexpr std::size_t kSize = std::tuple_size_v<Value>;
     static const std::vector<std::string> xyz = {"x", "y", "z"}, wxyz = {"w", "x", "y", "z"};
-    const auto& parts = kSize == core::kMaxJoints     ? joints
-                        : kSize == core::kMaxContacts ? contacts
+    const auto& parts = kSize == core::kMaxJoints     ? of.joints
+                        : kSize == core::kMaxContacts ? of.contacts
+                        : kSize == core::kMaxMarkers  ? of.markers
                         : kSize == 4                  ? wxyz
                                                       : xyz;
     for (const std::string& part : parts) {
-      name_columns<typename Value::value_type>(stem + "." + part, joints, contacts, names);
+      name_columns<typename Value::value_type>(stem + "." + part, of, names);
     }
   }
 }
 
 }  // namespace
 
-InputLayout::InputLayout(const std::vector<std::string>& joints,
-                         const std::vector<std::string>& contacts)
-    : joints_(joints.size()), contacts_(contacts.size()) {
+InputLayout::InputLayout(const InputNames& of)
+    : joints_(of.joints.size()),
+      contacts_(of.contacts.size()),
+      markers_(of.markers.size()),
+      estimation_(of.estimation) {
   struct Range {
     std::string_view name, rate;
     int first, count;
   };
   std::vector<Range> ranges;
   const auto add = [&]<typename Owner, typename Value>(const hal::NumberField<Owner, Value>& f) {
+    if (f.estimation && !estimation_) return;
     const int first = columns();
-    name_columns<Value>(std::string(f.name), joints, contacts, names_);
+    name_columns<Value>(std::string(f.name), of, names_);
     ranges.push_back({f.name, f.rate, first, columns() - first});
     if (std::is_same_v<Value, std::array<double, 4>>) quaternions_.push_back(first);
   };
@@ -78,9 +91,10 @@ InputLayout::InputLayout(const std::vector<std::string>& joints,
 
 void InputLayout::pack(const hal::Sensors& sensors, bool fresh, const hal::Commands& commands,
                        std::uint64_t* row) const noexcept {
+  const Sizes sizes{joints_, contacts_, markers_};
   const auto put = [&](const double& x) { *row++ = std::bit_cast<std::uint64_t>(x); };
   hal::for_each_field(hal::kCommandFields, [&](const auto& field) {
-    visit_numbers(commands.*field.member, joints_, contacts_, put);
+    visit_numbers(commands.*field.member, sizes, put);
   });
   *row++ = static_cast<std::uint64_t>(sensors.time_ns);
   std::uint64_t flags = fresh ? hal::kFreshBit : 0;
@@ -89,20 +103,22 @@ void InputLayout::pack(const hal::Sensors& sensors, bool fresh, const hal::Comma
     if constexpr (std::is_same_v<decltype(value), const bool&>) {
       flags |= value ? field.bit : 0;
     } else {
-      for (std::size_t c = 0; c < contacts_; ++c) flags |= value[c] ? field.bit << c : 0;
+      const std::size_t count = sizes.of(value.size());
+      for (std::size_t k = 0; k < count; ++k) flags |= value[k] ? field.bit << k : 0;
     }
   });
   *row++ = flags;
   hal::for_each_field(hal::kSensorFields, [&](const auto& field) {
-    visit_numbers(sensors.*field.member, joints_, contacts_, put);
+    if (!field.estimation || estimation_) visit_numbers(sensors.*field.member, sizes, put);
   });
 }
 
 bool InputLayout::unpack(const std::uint64_t* row, hal::Sensors& sensors,
                          hal::Commands& commands) const noexcept {
+  const Sizes sizes{joints_, contacts_, markers_};
   const auto take = [&](double& x) { x = std::bit_cast<double>(*row++); };
   hal::for_each_field(hal::kCommandFields, [&](const auto& field) {
-    visit_numbers(commands.*field.member, joints_, contacts_, take);
+    visit_numbers(commands.*field.member, sizes, take);
   });
   sensors.time_ns = static_cast<std::int64_t>(*row++);
   const std::uint64_t flags = *row++;
@@ -111,11 +127,12 @@ bool InputLayout::unpack(const std::uint64_t* row, hal::Sensors& sensors,
     if constexpr (std::is_same_v<decltype(value), bool&>) {
       value = (flags & field.bit) != 0;
     } else {
-      for (std::size_t c = 0; c < contacts_; ++c) value[c] = (flags >> c & field.bit) != 0;
+      const std::size_t count = sizes.of(value.size());
+      for (std::size_t k = 0; k < count; ++k) value[k] = (flags >> k & field.bit) != 0;
     }
   });
   hal::for_each_field(hal::kSensorFields, [&](const auto& field) {
-    visit_numbers(sensors.*field.member, joints_, contacts_, take);
+    if (!field.estimation || estimation_) visit_numbers(sensors.*field.member, sizes, take);
   });
   return (flags & hal::kFreshBit) != 0;
 }

@@ -12,13 +12,22 @@
 
 namespace footfall::engine {
 
+// What the columns are named after. Without `estimation` fields that only estimators need have no
+// columns (hal::NumberField::estimation).
+struct InputNames {
+  std::vector<std::string> joints, contacts;
+  std::vector<std::string> markers{};
+  bool estimation = false;
+  bool operator==(const InputNames&) const = default;
+};
+
 // Columns, in this order: hal::kCommandFields, time_ns, flags, hal::kSensorFields. time_ns and
 // flags (hal::kFreshBit, hal::kFlagFields) are integers, all others doubles.
 class InputLayout {
  public:
   static constexpr std::string_view kTimeColumn = "time_ns", kFlagsColumn = "flags";
 
-  InputLayout(const std::vector<std::string>& joints, const std::vector<std::string>& contacts);
+  explicit InputLayout(const InputNames& names);
 
   int columns() const noexcept { return static_cast<int>(names_.size()); }
   const std::vector<std::string>& names() const noexcept { return names_; }
@@ -33,12 +42,13 @@ class InputLayout {
   // fresh: whether the read that gave the sensors brought something new.
   void pack(const hal::Sensors& sensors, bool fresh, const hal::Commands& commands,
             std::uint64_t* row) const noexcept;
-  // Returns fresh.
+  // Returns fresh. Fields without columns keep their values.
   bool unpack(const std::uint64_t* row, hal::Sensors& sensors,
               hal::Commands& commands) const noexcept;
 
  private:
-  std::size_t joints_, contacts_;
+  std::size_t joints_, contacts_, markers_;
+  bool estimation_;
   std::vector<std::string> names_;
   std::vector<std::pair<int, int>> integrals_;
   std::vector<int> quaternions_;

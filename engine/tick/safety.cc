@@ -25,12 +25,11 @@ double limited_step(double previous, double wanted, double bound) noexcept {
 
 SafetyFilter::SafetyFilter(const model::RobotDescription& robot) : robot_(robot) {}
 
-void SafetyFilter::check_swings(const hal::Sensors& sensors, bool stepping,
-                                FaultFindings& findings) noexcept {
+void SafetyFilter::check_swings(const TickStart& tick, FaultFindings& findings) noexcept {
   for (std::size_t c = 0; c < robot_.contacts.size(); ++c) {
-    air_ticks_[c] = sensors.contact[c] ? 0 : air_ticks_[c] + 1;
+    air_ticks_[c] = tick.contact[c] ? 0 : air_ticks_[c] + 1;
     const double time = static_cast<double>(air_ticks_[c]) * robot_.period_s();
-    if (!stepping || time <= robot_.swing_limit) continue;
+    if (!tick.stepping || time <= robot_.swing_limit) continue;
     findings.add(Fault::swing_too_long, {static_cast<int>(c), time, time - robot_.swing_limit});
   }
 }
@@ -40,7 +39,7 @@ FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, const TickS
   FaultFindings findings;
   if (!tick.fresh) findings.add(Fault::sensor_stale);
   if (!tick.estimated) findings.add(Fault::no_estimate);
-  check_swings(sensors, tick.stepping, findings);
+  check_swings(tick, findings);
   if (sensors.backend_fault) findings.add(Fault::simulator_warning);
   if (!sensors.imu_fresh) findings.add(Fault::imu_stale);
   if (!sensors.mocap_fresh) findings.add(Fault::mocap_stale);

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "engine/estimators/estimator.h"
 #include "engine/tick/faults.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
@@ -16,6 +17,7 @@ struct TickStart {
   bool fresh = true;      // the last read brought something new
   bool estimated = true;  // the estimator gave a state
   bool stepping = false;  // the behavior has marked a step: a foot in the air is a swing
+  Contacts contact{};     // as estimated
 };
 
 class SafetyFilter {
@@ -48,7 +50,7 @@ class SafetyFilter {
   bool held_back() const noexcept { return held_back_; }
 
  private:
-  void check_swings(const hal::Sensors& sensors, bool stepping, FaultFindings& findings) noexcept;
+  void check_swings(const TickStart& tick, FaultFindings& findings) noexcept;
 
   const model::RobotDescription& robot_;
   std::array<std::int64_t, core::kMaxContacts> air_ticks_{};  // of each foot, since its lift-off

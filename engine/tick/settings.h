@@ -2,20 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "behaviors/script/script.h"
-#include "engine/estimators/catalogue.h"
 #include "model/control_model.h"
 #include "model/height_surface.h"
 
 namespace footfall::engine {
 
 struct LoopSettings {
-  std::string_view estimator = kDefaultEstimator;  // by name, of the catalogue
-  model::ModelDeviation deviation;                 // of the control model from the robot file
-  double planner_latency = 2e-3;                   // s, lock-step
-  bool lockstep = true;  // the caller's clock waits for what other threads compute
+  model::ModelDeviation deviation;  // of the control model from the robot file
+  double planner_latency = 2e-3;    // s, lock-step
+  bool lockstep = true;             // the caller's clock waits for what other threads compute
   behaviors::ScriptAccess script_access;
   bool run_scripts = true;       // false: a replay, which has their answers
   std::uint64_t seed = 0;        // of the scripts' random numbers

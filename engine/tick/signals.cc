@@ -64,7 +64,7 @@ SignalWriter::SignalWriter(const behaviors::Behavior& behavior, core::SignalTabl
       internal_in_force_(internal_rows_.size(), 1) {}
 
 void SignalWriter::write_measured(double time, const model::ControlModel& model,
-                                  const hal::Sensors& sensors) noexcept {
+                                  const hal::Sensors& sensors, const Estimate& estimate) noexcept {
   const behaviors::SignalLayout& layout = behavior_.layout;
   const model::State& s = model.state();
   signals_[layout.time] = time;
@@ -76,7 +76,7 @@ void SignalWriter::write_measured(double time, const model::ControlModel& model,
   put(signals_, layout.base_angvel, s.w_WB_B);
   put(signals_, layout.centroidal_momentum, model.centroidal_momentum());
   for (std::size_t c = 0; c < layout.contact.size(); ++c) {
-    signals_[layout.contact[c]] = sensors.contact[c] ? 1.0 : 0.0;
+    signals_[layout.contact[c]] = estimate.contact[c] ? 1.0 : 0.0;
     put(signals_, layout.force[c], sensors.force[c]);
   }
   signals_[layout.motor_saturated] = sensors.motor_saturated ? 1.0 : 0.0;

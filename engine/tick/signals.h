@@ -7,6 +7,7 @@
 #include "behaviors/machine/machine.h"
 #include "core/fault.h"
 #include "core/signal_table.h"
+#include "engine/estimators/estimator.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "tasks/whole_body_controller.h"
@@ -23,8 +24,8 @@ class SignalWriter {
   SignalWriter(const behaviors::Behavior& behavior, core::SignalTable& signals);
 
   // time: s since start.
-  void write_measured(double time, const model::ControlModel& model,
-                      const hal::Sensors& sensors) noexcept;
+  void write_measured(double time, const model::ControlModel& model, const hal::Sensors& sensors,
+                      const Estimate& estimate) noexcept;
   // torque_step: N m, largest of this tick.
   void write_control(const behaviors::Machine& machine, const tasks::ControllerResult& result,
                      const hal::Commands& commands, double torque_step,

@@ -5,7 +5,7 @@
 #include "core/index.h"
 
 namespace footfall::engine {
-FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool stepping) noexcept {
+FaultFindings SwingWatch::check(int control, const Contacts& contacts, bool stepping) noexcept {
   FaultFindings findings;
   const behaviors::ControlSpec& spec = behavior_.controls[at(control)];
   const model::RobotDescription& robot = behavior_.robot;
@@ -14,7 +14,7 @@ FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool s
     Phase& phase = phases_[at(c)];
     const bool held = behaviors::law_holds(behavior_, control, c);
     if (!stepping || held || spec.contacts.empty()) {
-      if (held && phase.ticks > 0 && !sensors.contact[at(c)]) {
+      if (held && phase.ticks > 0 && !contacts[at(c)]) {
         findings.add(core::Fault::load_air, {c, static_cast<double>(phase.ticks) * period, 0.0});
       }
       const std::int64_t excess = 2 * phase.loaded - phase.ticks;
@@ -26,7 +26,7 @@ FaultFindings SwingWatch::check(int control, const hal::Sensors& sensors, bool s
       continue;
     }
     ++phase.ticks;
-    if (sensors.contact[at(c)]) ++phase.loaded;
+    if (contacts[at(c)]) ++phase.loaded;
     const double loaded = static_cast<double>(phase.loaded) * period;
     if (loaded <= 0.5 * robot.swing_limit) continue;
     findings.add(core::Fault::swing_contact, {c, loaded, loaded - 0.5 * robot.swing_limit});

@@ -8,8 +8,8 @@
 
 #include "behaviors/compiled/behavior.h"
 #include "core/capacities.h"
+#include "engine/estimators/estimator.h"
 #include "engine/tick/faults.h"
-#include "hal/hardware.h"
 
 namespace footfall::engine {
 
@@ -20,7 +20,7 @@ class SwingWatch {
   // control: of this tick, index into Behavior::controls. stepping: the behavior has marked a step.
   // A phase is judged when it ends, and before that as soon as the foot has borne load for half of
   // `limits.swing`. A foot that no other one replaces (contacts: []) does not swing.
-  FaultFindings check(int control, const hal::Sensors& sensors, bool stepping) noexcept;
+  FaultFindings check(int control, const Contacts& contacts, bool stepping) noexcept;
 
   // Goes on from the watch of another loop on the same robot.
   void take_over(const SwingWatch& old) noexcept { phases_ = old.phases_; }

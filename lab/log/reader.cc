@@ -85,8 +85,11 @@ void Reader::metadata(const std::string& name, const std::string& key, const std
   if (name == "run") log_.run[key] = value;
   if (name == "signals" && key == "signals") signals(value);
   if (name == "columns" && key == "columns") log_.inputs.columns = texts_of(value);
-  if (name == "columns" && key == "joints") log_.inputs.joints = texts_of(value);
-  if (name == "columns" && key == "contacts") log_.inputs.contacts = texts_of(value);
+  engine::InputNames& names = log_.inputs.names;
+  if (name == "columns" && key == "joints") names.joints = texts_of(value);
+  if (name == "columns" && key == "contacts") names.contacts = texts_of(value);
+  if (name == "columns" && key == "markers") names.markers = texts_of(value);
+  if (name == "columns" && key == "estimation") names.estimation = value == "true";
   if (name == "events" && key == "events") log_.event_names = texts_of(value);
   if (name != "setup") return;
   if (key == "setup") log_.setup = value;

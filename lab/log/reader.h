@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/tick/input_row.h"
+
 namespace footfall::lab {
 
 struct LoggedSignal {
@@ -63,7 +65,7 @@ struct LoggedParameter {
 // Inputs, commands and digests of consecutive ticks, bit for bit.
 struct LoggedInputs {
   std::vector<std::string> columns;  // named as in engine::InputLayout
-  std::vector<std::string> joints, contacts;
+  engine::InputNames names;          // of these columns
   std::int64_t first_tick = 0;
   std::vector<std::uint64_t> words;   // ticks x columns
   std::vector<std::uint64_t> digest;  // digest of all signals, by tick

@@ -27,7 +27,7 @@ class LoggedHardware final : public hal::Hardware {
   // Plays these inputs, beginning with tick `next`.
   void play(const LoggedInputs& inputs, std::int64_t next) {
     inputs_ = &inputs;
-    layout_.emplace(inputs.joints, inputs.contacts);
+    layout_.emplace(inputs.names);
     if (layout_->names() != inputs.columns) {
       throw std::runtime_error("the log's inputs are not of this program's kind");
     }

@@ -97,12 +97,12 @@ class Verifier {
   std::vector<std::string> commands(std::int64_t tick) const {
     std::vector<std::string> lines;
     const std::uint64_t* row = log_.inputs.row(tick);
-    for (std::size_t j = 0; j < log_.inputs.joints.size(); ++j) {
+    for (std::size_t j = 0; j < log_.inputs.names.joints.size(); ++j) {
       const auto then = std::bit_cast<double>(row[j]);
       const double now = replay_.loop().commands().tau[j];
       if (core::same_bits(then, now)) continue;
-      lines.push_back(
-          fmt::format("joint.{}.command: {} in the log, {} now", log_.inputs.joints[j], then, now));
+      lines.push_back(fmt::format("joint.{}.command: {} in the log, {} now",
+                                  log_.inputs.names.joints[j], then, now));
     }
     return lines;
   }

@@ -197,8 +197,11 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
   std::vector<std::string> states;
   for (const behaviors::StateInfo& state : behavior.states) states.push_back(state.path);
   engine::LogHeader header;
-  for (const auto& contact : behavior.robot.contacts) header.contacts.push_back(contact.name);
-  for (const auto& joint : behavior.robot.joints) header.joints.push_back(joint.name);
+  for (const auto& contact : behavior.robot.contacts) header.names.contacts.push_back(contact.name);
+  for (const auto& joint : behavior.robot.joints) header.names.joints.push_back(joint.name);
+  header.names.markers = source.markers;
+  header.names.estimation =
+      source.sensor_errors || behavior.estimator.type != behaviors::EstimatorType::true_state;
   header.run = {{"behavior", behavior.name},
                 {"robot", behavior.robot.name},
                 {"robot_file", behavior.robot.path},
@@ -213,8 +216,8 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
                 {"rate_hz", fmt::format("{}", behavior.robot.rate_hz())},
                 {"states", core::json_text(states)},
                 {"tasks", core::json_text(nlohmann::json(task_types(behavior)))},
-                {"contacts", core::json_text(header.contacts)},
-                {"joints", core::json_text(header.joints)}};
+                {"contacts", core::json_text(header.names.contacts)},
+                {"joints", core::json_text(header.names.joints)}};
   if (source.friction > 0.0) {
     header.run.emplace_back("friction", fmt::format("{:g}", source.friction));
   }

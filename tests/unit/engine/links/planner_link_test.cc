@@ -44,7 +44,7 @@ struct Link {
   }
   void measure() {
     model.update(state);
-    writer.write_measured(0.0, model, {});
+    writer.write_measured(0.0, model, {}, {});
   }
   double predicted(int axis) const {
     return signals[behavior->layout.planner[0].predicted_vel + axis];

@@ -53,8 +53,8 @@ LogHeader small_header() {
   header.files = {{"/a/b.yaml", "application/yaml", "behavior: 1\n"}};
   header.parameters = {{"goal", 0, 2}, {"height", 2, 1}};
   header.values = {0.1, -0.0, 0.91};
-  header.joints = {"hip", "knee"};
-  header.contacts = {"foot"};
+  header.names.joints = {"hip", "knee"};
+  header.names.contacts = {"foot"};
   header.rate_mhz = 1'000'000;
   header.row_every = kEvery;
   return header;
@@ -138,7 +138,7 @@ std::size_t checked_rows(const lab::Log& log) {
 
 // Ticks whose inputs, commands and digests are as expected, bit for bit; all of them counted.
 std::int64_t checked_inputs(const lab::Log& log) {
-  const InputLayout layout(log.inputs.joints, log.inputs.contacts);
+  const InputLayout layout(log.inputs.names);
   EXPECT_EQ(layout.names(), log.inputs.columns);
   core::SignalTable table = small_table();
   std::vector<std::uint64_t> want(static_cast<std::size_t>(layout.columns()));

@@ -14,7 +14,7 @@ namespace {
 
 // Two joints and one contact, written out: the order of the columns is the log's format.
 TEST(InputLayout, ColumnsKeepTheirNamesAndOrder) {
-  const InputLayout layout({"hip", "knee"}, {"foot"});
+  const InputLayout layout({{"hip", "knee"}, {"foot"}});
   const std::vector<std::string> names = {
       "command.hip",      "command.knee", "time_ns",      "flags",           "qd.hip",
       "qd.knee",          "q.hip",        "q.knee",       "tau.hip",         "tau.knee",
@@ -28,14 +28,14 @@ TEST(InputLayout, ColumnsKeepTheirNamesAndOrder) {
 }
 
 TEST(InputLayout, PositionsAreTheIntegralsOfTheirVelocities) {
-  const InputLayout layout({"hip", "knee"}, {"foot"});
+  const InputLayout layout({{"hip", "knee"}, {"foot"}});
   const std::vector<std::pair<int, int>> pairs = {{4, 6}, {5, 7}, {19, 22}, {20, 23}, {21, 24}};
   EXPECT_EQ(layout.integrals(), pairs);
   EXPECT_EQ(layout.quaternions(), std::vector<int>{25});
 }
 
 TEST(InputLayout, FlagsHaveTheBitsOfTheLogFormat) {
-  const InputLayout layout({"hip"}, {"left", "right"});
+  const InputLayout layout({{"hip"}, {"left", "right"}});
   std::vector<std::uint64_t> row(static_cast<std::size_t>(layout.columns()));
   hal::Sensors sensors;
   sensors.imu_fresh = sensors.mocap_fresh = false;
@@ -63,7 +63,7 @@ TEST(InputLayout, FlagsHaveTheBitsOfTheLogFormat) {
 
 // Distinct bits in every word: what a row holds is what unpack() and pack() return.
 TEST(InputLayout, ARowReturnsBitForBit) {
-  const InputLayout layout({"hip", "knee", "ankle"}, {"left", "right"});
+  const InputLayout layout({{"hip", "knee", "ankle"}, {"left", "right"}});
   std::vector<std::uint64_t> row, back(static_cast<std::size_t>(layout.columns()));
   for (std::uint64_t k = 0; k < back.size(); ++k) row.push_back(0x7ff8'0000'0000'0001U + 3 * k);
   row[4] = 1 + 2 + 16 + 512;  // flags, behind three commands and the time
