@@ -50,9 +50,11 @@ struct Sensors {
   std::array<double, 3> true_gyro_bias{};           // rad/s, IMU frame
   std::array<double, 3> true_accelerometer_bias{};  // m/s^2, IMU frame
 
-  bool body_contact = false;     // a body other than a declared contact touches (simulator)
-  bool backend_fault = false;    // the backend raised a warning or reset itself (simulator)
-  bool motor_saturated = false;  // a motor gave less than its torque loop asked for
+  std::array<double, 3> aid_force{};  // N, of external aids on the robot, world, mean over the tick
+                                      // (simulator)
+  bool body_contact = false;          // a body other than a declared contact touches (simulator)
+  bool backend_fault = false;         // the backend raised a warning or reset itself (simulator)
+  bool motor_saturated = false;       // a motor gave less than its torque loop asked for
 };
 
 // Written once a tick.
@@ -84,6 +86,8 @@ struct NumberField {
   // Only estimators need it: it has columns in the log where the state is estimated, or sensors
   // have errors.
   bool estimation = false;
+  // Of external aids: it has columns where the world has some.
+  bool aids = false;
 };
 
 // A truth value, or one by contact or marker.
@@ -127,6 +131,7 @@ inline constexpr std::tuple kSensorFields{
                 SensorGroup::truth,
                 {},
                 true},
+    NumberField{&Sensors::aid_force, "aid_force", "N", SensorGroup::backend, {}, false, true},
 };
 // Bit 1 is of the read as a whole: something new arrived.
 inline constexpr std::uint64_t kFreshBit = 1;

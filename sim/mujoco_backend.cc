@@ -124,14 +124,16 @@ void MujocoBackend::tilt_axes() {
   mj_setConst(model_, data_);
 }
 
-// Sets the nominal posture, beside it what was drawn: upright, the lowest foot point touching the
-// ground.
+// Sets the posture of robot and world, beside it what was drawn: upright, the lowest foot point at
+// the start's height above the ground.
 void MujocoBackend::place_at_posture() {
   mj_resetData(model_, data_);
   const StartOffsets& start = world_.start;
+  core::Diagnostics ignored;  // the world was checked
+  const std::vector<double> beside = start_joints(world_, robot_, ignored);
   for (std::size_t j = 0; j < qpos_.size(); ++j) {
     data_->qpos[qpos_[j]] =
-        robot_.joints[j].posture + (j < start.joints.size() ? start.joints[j] : 0.0);
+        robot_.joints[j].posture + beside[j] + (j < start.joints.size() ? start.joints[j] : 0.0);
   }
   mj_kinematics(model_, data_);
   double lowest = 1e9;
@@ -140,6 +142,7 @@ void MujocoBackend::place_at_posture() {
     lowest = std::min(lowest, data_->site_xpos[3 * site + 2] - c.radius);
   }
   if (!robot_.contacts.empty()) data_->qpos[2] -= lowest;
+  data_->qpos[2] += world_.start_height;
   for (std::size_t k = 0; k < 2; ++k) data_->qvel[k] = start.velocity[k];
   for (std::size_t k = 0; k < 3; ++k) data_->qvel[3 + k] = start.rates[k];
   mj_forward(model_, data_);
@@ -156,6 +159,7 @@ void MujocoBackend::start() {
     drive_->start({joint_angles_.data(), qpos_.size()}, {drive_torques_.data(), qpos_.size()});
   }
   pushes_ = {};
+  aid_force_ = {};
   held_ = {};
   tick_ = 0;
   stopped_ = false;
@@ -200,6 +204,8 @@ bool MujocoBackend::read(hal::Sensors& s) noexcept {
   for (std::size_t k = 0; k < 4; ++k) s.q_WB[k] = data_->qpos[3 + k];
   s.gyro = s.w_WB_B;
   sense_contacts(s);
+  for (std::size_t k = 0; k < 3; ++k)
+    s.aid_force[k] = aid_force_[k] / world_.physics.steps_per_tick;
   s.backend_fault = warnings() != warnings_at_start_;
   return true;
 }
@@ -230,6 +236,7 @@ void MujocoBackend::sense_contacts(hal::Sensors& s) noexcept {
 }
 
 void MujocoBackend::write(const hal::Commands& commands) noexcept {
+  aid_force_ = {};
   for (int step = 0; step < world_.physics.steps_per_tick; ++step) {
     if (drive_) {
       advance_drive(commands);

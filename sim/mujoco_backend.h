@@ -102,6 +102,7 @@ class MujocoBackend final : public hal::Hardware {
   std::array<double, core::kMaxJoints> joint_angles_{}, joint_rates_{}, drive_torques_{};
   std::array<ActivePush, kMaxPushes> pushes_{};
   std::array<ActiveSprings, kMaxHeld> held_{};
+  std::array<double, 3> aid_force_{};       // N, world: sum over the last tick's physics steps
   std::vector<ActiveSprings> constraints_;  // of the world, anchored at the start
   std::int64_t warnings_at_start_ = 0;
   std::int64_t tick_ = 0;

@@ -40,7 +40,13 @@ void MujocoBackend::apply_forces() noexcept {
   for (const ActiveSprings& h : held_) {
     if (h.body != 0) apply_springs(*model_, *data_, h);
   }
-  for (const ActiveSprings& c : constraints_) apply_springs(*model_, *data_, c);
+  for (const ActiveSprings& c : constraints_) {
+    std::array<double, 3> before{};
+    const double* force = data_->xfrc_applied + 6 * c.body;
+    std::copy_n(force, 3, before.begin());
+    apply_springs(*model_, *data_, c);
+    for (std::size_t k = 0; k < 3; ++k) aid_force_[k] += force[k] - before[k];
+  }
 }
 
 int MujocoBackend::hold(int body, const model::BodySprings& springs) noexcept {

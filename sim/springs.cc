@@ -118,6 +118,31 @@ void apply_turns(const mjModel& m, mjData& d, const ActiveSprings& springs,
   }
 }
 
+// A rope's pull at its end on the body. velocity: of the body, rotation then translation of its
+// CoM, world.
+void apply_rope(mjData& d, const ActiveSprings& springs, const double* velocity) noexcept {
+  const ActiveRope& rope = springs.rope;
+  const double* origin = d.xpos + 3 * springs.body;
+  const double* com = d.xipos + 3 * springs.body;
+  Vector end{}, arm{}, moved{}, along{};
+  mju_rotVecMat(end.data(), rope.from.data(), d.xmat + 9 * springs.body);
+  for (std::size_t k = 0; k < 3; ++k) {
+    end[k] += origin[k];
+    arm[k] = end[k] - com[k];
+    along[k] = rope.to[k] - end[k];
+  }
+  const double distance = mju_normalize3(along.data());
+  mju_cross(moved.data(), velocity, arm.data());
+  double rate = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) rate -= along[k] * (velocity[3 + k] + moved[k]);
+  const double tension = rope_tension(rope, distance, rate);
+  Vector pull{}, torque{};
+  mju_scl3(pull.data(), along.data(), tension);
+  mju_cross(torque.data(), arm.data(), pull.data());
+  mju_addTo3(d.xfrc_applied + 6 * springs.body, pull.data());
+  mju_addTo3(d.xfrc_applied + 6 * springs.body + 3, torque.data());
+}
+
 }  // namespace
 
 double spring_force(const ActiveAxis& axis, double inertia, double behind, double rate) noexcept {
@@ -130,6 +155,11 @@ double spring_force(const ActiveAxis& axis, double inertia, double behind, doubl
     return std::max(0.0, scale * (axis.stiffness * (behind + axis.low) - axis.damping * rate));
   }
   return 0.0;
+}
+
+double rope_tension(const ActiveRope& rope, double distance, double rate) noexcept {
+  if (distance <= rope.length) return 0.0;
+  return std::max(0.0, rope.stiffness * (distance - rope.length) + rope.damping * rate);
 }
 
 double mass_behind(const mjModel_& model, int body) noexcept {
@@ -164,6 +194,12 @@ ActiveSprings attach_springs(const mjModel_& model, const mjData_& data, int bod
     const double now = data.xipos[3 * body + static_cast<int>(k)];
     out.axes[k].anchor = spring && spring->at ? *spring->at : now;
   }
+  if (springs.rope) {
+    const model::Rope& rope = *springs.rope;
+    const double critical = 2.0 * std::sqrt(rope.stiffness * mass_behind(model, body));
+    out.rope = {true,        rope.to,        rope.from,
+                rope.length, rope.stiffness, rope.damping.value_or(critical)};
+  }
   out.orientation = anchored_orientation(data.xquat + 4 * body, springs);
   out.alike_turns = are_alike(out.axes[3], out.axes[4]) && are_alike(out.axes[3], out.axes[5]);
   return out;
@@ -179,6 +215,7 @@ void apply_springs(const mjModel_& model, mjData_& data, const ActiveSprings& sp
     const ActiveAxis& axis = springs.axes[k];
     if (axis.acts) force[k] += spring_force(axis, mass, axis.anchor - x[k], velocity[3 + k]);
   }
+  if (springs.rope.acts) apply_rope(data, springs, velocity.data());
   const auto acts = [](const ActiveAxis& axis) { return axis.acts; };
   if (std::any_of(springs.axes.begin() + model::kFirstAngle, springs.axes.end(), acts)) {
     apply_turns(model, data, springs, velocity.data());

@@ -21,6 +21,12 @@ struct ActiveAxis {
   double low = 0.0, high = 0.0;  // travel from the anchor
 };
 
+struct ActiveRope {
+  bool acts = false;
+  std::array<double, 3> to{}, from{};  // m, world; the body's frame
+  double length = 0.0, stiffness = 0.0, damping = 0.0;
+};
+
 struct ActiveSprings {
   int body = 0;  // 0: none
   // Whether rotation has the same two-sided spring about all axes: then the torque is along the
@@ -31,11 +37,14 @@ struct ActiveSprings {
   bool present = true;
   std::array<ActiveAxis, 6> axes{};
   std::array<double, 4> orientation{};  // w x y z, anchored
+  ActiveRope rope;
 };
 
 // The force of an axis; `behind`: anchor minus position; `inertia`: mass or rotational inertia for
 // per_inertia. One-sided, it never points outwards: damping alone would let a rope push.
 double spring_force(const ActiveAxis& axis, double inertia, double behind, double rate) noexcept;
+// The pull of a rope whose ends are this far apart, m, and part with `rate`, m/s; 0 or more, N.
+double rope_tension(const ActiveRope& rope, double distance, double rate) noexcept;
 
 // Mass (of the whole robot) or rotational inertia that critical damping is for. The latter is the
 // least diagonal element of what a free joint sees, of any other body its least principal one.

@@ -59,6 +59,7 @@ class SpringsCheck {
     const int body = mj_name2id(model_.get(), mjOBJ_BODY, aid.body.name.c_str());
     if (body <= 0) return;
     const ActiveSprings springs = attach_springs(*model_, *data_, body, aid, world_.physics.hands);
+    if (aid.rope) judge_rope(aid, springs.rope, body);
     for (std::size_t k = 0; k < springs.axes.size(); ++k) {
       const ActiveAxis& axis = springs.axes[k];
       if (!axis.acts) continue;
@@ -84,6 +85,32 @@ class SpringsCheck {
     const double* inertia = model_->body_inertia + 3 * body;
     constexpr double kMostOfJ = std::numbers::pi * std::numbers::pi / 4.0;
     return std::min({inertia[0], inertia[1], inertia[2]}) / (alike_turns ? 1.0 : kMostOfJ);
+  }
+
+  // A pull at an arm r from the body's CoM meets at least the mass 1/(1/m + r^2/I), I the least
+  // principal inertia.
+  void judge_rope(const model::BodySprings& aid, const ActiveRope& rope, int body) {
+    double arm = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double r = rope.from[k] - model_->body_ipos[3 * body + static_cast<int>(k)];
+      arm += r * r;
+    }
+    const double* inertia = model_->body_inertia + 3 * body;
+    const double least = std::min({inertia[0], inertia[1], inertia[2]});
+    const double mass = 1.0 / (1.0 / model_->body_mass[body] + arm / least);
+    const double h = model_->opt.timestep;
+    const bool rk4 = world_.physics.integrator == Integrator::rk4;
+    const bool stable =
+        rk4 ? h * rope.damping < 2.0 * mass && 2.0 * rope.damping > h * rope.stiffness
+            : h * h * rope.stiffness + 2.0 * h * rope.damping < 4.0 * mass;
+    if (stable) return;
+    core::Mark mark = aid.rope->mark;
+    mark.file = diagnostics_.add_file(aid.body.file);
+    diagnostics_.error(
+        mark, "out-of-range",
+        fmt::format("the physics step of 1/{:.0f} s does not integrate the rope of '{}' stably: "
+                    "{:.3g} N/m and {:.3g} N s/m on {:.3g} kg, as its arm has it",
+                    1.0 / h, aid.body.name, rope.stiffness, rope.damping, mass));
   }
 
   void judge(const model::BodySprings& aid, std::size_t k, const AxisSum& before,

@@ -274,6 +274,7 @@ lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription
   source.world_file = world.path;
   if (options.backend == "mujoco") source.friction = world.friction;
   source.elastic = world.actuators.model == sim::ActuatorModel::series_elastic;
+  source.aids = !world.constraints.empty();
   source.settings = loop_settings(options, world);
   core::Diagnostics ignored;  // loaded before
   source.set = split_settings(options.set, ignored);

@@ -29,9 +29,11 @@ hal::StubSettings stub_settings(const model::RobotDescription& robot,
   settings.contacts = static_cast<int>(robot.contacts.size());
   settings.period = robot.period_s();
   settings.base = {0.0, 0.0, robot.standing_height};
+  core::Diagnostics ignored;  // the world was checked
+  const std::vector<double> beside = sim::start_joints(world, robot, ignored);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const double drawn = j < world.start.joints.size() ? world.start.joints[j] : 0.0;
-    settings.start.push_back(robot.joints[j].posture + drawn);
+    settings.start.push_back(robot.joints[j].posture + beside[j] + drawn);
   }
   settings.inertia = world.stand.inertia;
   settings.stiffness = world.stand.stiffness;

@@ -147,6 +147,9 @@ SignalLayout register_signals(const model::RobotDescription& robot,
       table.add("transition.weight", core::kNone, "weight of the second control law, 0 to 1");
   layout.motor_saturated = table.add("motor.saturated", core::kNone,
                                      "1 while a motor gives less than its torque loop asks for");
+  layout.aid_force =
+      add_axes(table, "aid.force", core::kForce,
+               "external aids' force on the robot, of a simulator, world", {"x", "y", "z"});
   layout.torque_step =
       table.add("torque.step", core::kTorque, "largest torque step of a joint between two ticks");
   layout.faults = table.add("faults", core::kNone, "faults counted so far");

@@ -74,6 +74,7 @@ struct SignalLayout {
   int state = -1;              // index of the first active atomic state in document order
   int transition_weight = -1;  // of the second control law, 0..1
   int motor_saturated = -1;    // 0 or 1
+  int aid_force = -1;          // aid.force.{x,y,z}: of external aids on the robot, N, world
   int torque_step = -1;        // largest |tau - tau_previous| over joints, N m
   int faults = -1;             // faults counted so far
   int tick_late = -1;          // ticks so far that began late

@@ -75,7 +75,8 @@ void LogEncoder::write_head(const core::SignalTable& table, const LogHeader& hea
                                  {"joints", core::json_text(header.names.joints)},
                                  {"contacts", core::json_text(header.names.contacts)},
                                  {"markers", core::json_text(header.names.markers)},
-                                 {"estimation", header.names.estimation ? "true" : "false"}});
+                                 {"estimation", header.names.estimation ? "true" : "false"},
+                                 {"aids", header.names.aids ? "true" : "false"}});
   mcap_.add_metadata("events", {{"events", core::json_text(header.events)}});
   mcap_.add_metadata("setup", {{"setup", header.setup},
                                {"rate_mhz", std::to_string(header.rate_mhz)},

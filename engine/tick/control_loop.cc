@@ -76,9 +76,11 @@ void ControlLoop::compute() noexcept {
   const bool estimated = estimate_state();
   model_.update(estimate_.state);
   writer_.write_measured(time(), model_, sensors_, estimate_);
-  faults_.take(safety_.check_state(
-                   sensors_, {fresh_, estimated, machine_->stepping(), estimate_.contact}, model_),
-               *machine_);
+  // A foot in the air swings while another one holds; a robot on a rope may hang there.
+  const bool swings = machine_->stepping() && link_.support() != 0;
+  faults_.take(
+      safety_.check_state(sensors_, {fresh_, estimated, swings, estimate_.contact}, model_),
+      *machine_);
   faults_.take_late(outside_.deliver(tick_, *machine_, edits_.moved() || safety_.held_back()),
                     *machine_);
   machine_->tick(tick_);

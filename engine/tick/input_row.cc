@@ -62,14 +62,15 @@ InputLayout::InputLayout(const InputNames& of)
     : joints_(of.joints.size()),
       contacts_(of.contacts.size()),
       markers_(of.markers.size()),
-      estimation_(of.estimation) {
+      estimation_(of.estimation),
+      aids_(of.aids) {
   struct Range {
     std::string_view name, rate;
     int first, count;
   };
   std::vector<Range> ranges;
   const auto add = [&]<typename Owner, typename Value>(const hal::NumberField<Owner, Value>& f) {
-    if (f.estimation && !estimation_) return;
+    if (!has(f)) return;
     const int first = columns();
     name_columns<Value>(std::string(f.name), of, names_);
     ranges.push_back({f.name, f.rate, first, columns() - first});
@@ -109,7 +110,7 @@ void InputLayout::pack(const hal::Sensors& sensors, bool fresh, const hal::Comma
   });
   *row++ = flags;
   hal::for_each_field(hal::kSensorFields, [&](const auto& field) {
-    if (!field.estimation || estimation_) visit_numbers(sensors.*field.member, sizes, put);
+    if (has(field)) visit_numbers(sensors.*field.member, sizes, put);
   });
 }
 
@@ -132,7 +133,7 @@ bool InputLayout::unpack(const std::uint64_t* row, hal::Sensors& sensors,
     }
   });
   hal::for_each_field(hal::kSensorFields, [&](const auto& field) {
-    if (!field.estimation || estimation_) visit_numbers(sensors.*field.member, sizes, take);
+    if (has(field)) visit_numbers(sensors.*field.member, sizes, take);
   });
   return (flags & hal::kFreshBit) != 0;
 }

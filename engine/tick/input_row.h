@@ -12,12 +12,13 @@
 
 namespace footfall::engine {
 
-// What the columns are named after. Without `estimation` fields that only estimators need have no
-// columns (hal::NumberField::estimation).
+// What the columns are named after. Fields that only estimators need, or that are of external aids,
+// have columns only where `estimation` and `aids` say so (hal::NumberField).
 struct InputNames {
   std::vector<std::string> joints, contacts;
   std::vector<std::string> markers{};
   bool estimation = false;
+  bool aids = false;
   bool operator==(const InputNames&) const = default;
 };
 
@@ -47,8 +48,13 @@ class InputLayout {
               hal::Commands& commands) const noexcept;
 
  private:
+  template <typename Field>
+  bool has(const Field& field) const noexcept {
+    return (!field.estimation || estimation_) && (!field.aids || aids_);
+  }
+
   std::size_t joints_, contacts_, markers_;
-  bool estimation_;
+  bool estimation_, aids_;
   std::vector<std::string> names_;
   std::vector<std::pair<int, int>> integrals_;
   std::vector<int> quaternions_;

@@ -16,7 +16,7 @@ namespace footfall::engine {
 struct TickStart {
   bool fresh = true;      // the last read brought something new
   bool estimated = true;  // the estimator gave a state
-  bool stepping = false;  // the behavior has marked a step: a foot in the air is a swing
+  bool stepping = false;  // the behavior steps on some foot: one in the air is a swing
   Contacts contact{};     // as estimated
 };
 

@@ -79,6 +79,7 @@ void SignalWriter::write_measured(double time, const model::ControlModel& model,
     signals_[layout.contact[c]] = estimate.contact[c] ? 1.0 : 0.0;
     put(signals_, layout.force[c], sensors.force[c]);
   }
+  put(signals_, layout.aid_force, sensors.aid_force);
   signals_[layout.motor_saturated] = sensors.motor_saturated ? 1.0 : 0.0;
   for (std::size_t p = 0; p < layout.point.size(); ++p) {
     put(signals_, layout.point[p], model.point_position(static_cast<int>(p)));

@@ -90,6 +90,7 @@ void Reader::metadata(const std::string& name, const std::string& key, const std
   if (name == "columns" && key == "contacts") names.contacts = texts_of(value);
   if (name == "columns" && key == "markers") names.markers = texts_of(value);
   if (name == "columns" && key == "estimation") names.estimation = value == "true";
+  if (name == "columns" && key == "aids") names.aids = value == "true";
   if (name == "events" && key == "events") log_.event_names = texts_of(value);
   if (name != "setup") return;
   if (key == "setup") log_.setup = value;

@@ -200,6 +200,7 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
   for (const auto& contact : behavior.robot.contacts) header.names.contacts.push_back(contact.name);
   for (const auto& joint : behavior.robot.joints) header.names.joints.push_back(joint.name);
   header.names.markers = source.markers;
+  header.names.aids = source.aids;
   header.names.estimation =
       source.sensor_errors || behavior.estimator.type != behaviors::EstimatorType::true_state;
   header.run = {{"behavior", behavior.name},

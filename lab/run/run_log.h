@@ -66,6 +66,7 @@ struct LogSource {
   std::string command;                                   // as it was typed, for people
   double friction = 0.0;                                 // of the ground; 0: unknown
   bool elastic = false;                                  // series-elastic actuators
+  bool aids = false;                                     // the world has external aids
   bool sensor_errors = false;                            // the world's sensors have errors
   std::vector<std::string> markers;                      // of motion capture, by name
   int row_every = 6;                                     // ticks; 1: derived signals of all ticks

@@ -55,6 +55,18 @@ constexpr KeySpec kHeldTurnRows[] = {
     key("travel", pair(quantity(kNone, "an angle")), kTurnDoc).otherwise(kNoTravel),
 };
 
+constexpr KeySpec kRopeRows[] = {
+    key("to", by_axis(quantity(kLength)), "the fixed end: `[x, y, z]` in the world").required(),
+    key("from", by_axis(quantity(kLength)), "the other end, in the body's frame")
+        .otherwise("[0 m, 0 m, 0 m]"),
+    key("length", quantity(kLength), "up to which it is slack").required(),
+    key("stiffness", quantity(kLinearStiffness, "a stiffness in N/m"), "while it is taut")
+        .required(),
+    key("damping", quantity(kLinearDamping, "a damping in N s/m"),
+        "while it is taut; a rope never pushes")
+        .otherwise("critical for the robot's mass"),
+};
+
 constexpr KeySpec kConstraintRows[] = {
     key("body", name_of("a body"), "the body it acts on").required(),
     key("x", map_of(kLineSpringKeys), "its centre of mass along x of the world"),
@@ -63,6 +75,7 @@ constexpr KeySpec kConstraintRows[] = {
     key("roll", map_of(kTurnSpringKeys), "its rotation about x of the world"),
     key("pitch", map_of(kTurnSpringKeys), "likewise about y"),
     key("yaw", map_of(kTurnSpringKeys), "likewise about z"),
+    key("rope", map_of(kRopeKeys), "a rope between a point of the body and a fixed place"),
 };
 
 constexpr WordSpec kAxisRows[] = {
@@ -102,7 +115,11 @@ constinit const core::KeyTable kConstraintKeys = {
         "An external aid: springs between a body and the world. An axis that is not named is "
         "free.",
     .keys = kConstraintRows,
-    .one_of = {"x y z roll pitch yaw"}};
+    .one_of = {"x y z roll pitch yaw rope"}};
+constinit const core::KeyTable kRopeKeys = {
+    .id = "rope",
+    .doc = "A rope between a point of the body and a fixed place: it pulls while it is taut.",
+    .keys = kRopeRows};
 constinit const core::KeyTable kHoldKeys = {
     .id = "hold",
     .doc = "A body held where it is at that moment. An axis that is not named is free.",

@@ -55,6 +55,38 @@ class SpringReader {
     }
   }
 
+  void read_rope(const YamlNode& node, BodySprings& out) const {
+    if (!core::expect_map(node, "a rope: {to: [X, Y, Z], length: VALUE, stiffness: VALUE}",
+                          diagnostics_)) {
+      return;
+    }
+    core::check_keys(node, kRopeKeys, diagnostics_);
+    Rope& rope = out.rope.emplace();
+    rope.mark = node.mark;
+    if (const YamlNode* to = core::require_key(node, "to", diagnostics_)) read_place(*to, rope.to);
+    if (const YamlNode* from = node.find("from")) read_place(*from, rope.from);
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    if (const YamlNode* length = core::require_key(node, "length", diagnostics_)) {
+      rope.length = core::read_bounded(*length, core::kLength, 0.0, kAny, diagnostics_, "a length")
+                        .value_or(0.0);
+    }
+    if (const YamlNode* stiffness = core::require_key(node, "stiffness", diagnostics_)) {
+      rope.mark = stiffness->mark;
+      const auto read =
+          core::read_quantity(*stiffness, kLinearStiffness, diagnostics_, "a stiffness in N/m");
+      rope.stiffness = read.value_or(0.0);
+      if (read && !(*read > 0.0)) {
+        diagnostics_.error(stiffness->mark, "out-of-range",
+                           fmt::format("expected a stiffness in N/m above zero, got {}",
+                                       core::describe(*stiffness)));
+      }
+    }
+    if (const YamlNode* damping = node.find("damping")) {
+      rope.damping = core::read_bounded(*damping, kLinearDamping, 0.0, kAny, diagnostics_,
+                                        "a damping in N s/m");
+    }
+  }
+
   // Named axes that have no values of their own.
   void read_named_axes(const YamlNode& node, BodySprings& out) const {
     if (!core::expect_sequence(node, "a list of axes: [x, y, yaw]", diagnostics_)) return;
@@ -74,6 +106,17 @@ class SpringReader {
   }
 
  private:
+  void read_place(const YamlNode& node, std::array<double, 3>& place) const {
+    if (!node.is_sequence() || node.items.size() != place.size()) {
+      core::report_expected(node, "three lengths [x, y, z]", diagnostics_);
+      return;
+    }
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      place[k] =
+          core::read_quantity(node.items[k], core::kLength, diagnostics_, "a length").value_or(0.0);
+    }
+  }
+
   AxisSpring read_axis(const YamlNode& node, const AxisKind& kind) const {
     AxisSpring out;
     out.mark = node.mark;
@@ -150,13 +193,14 @@ std::vector<BodySprings> read_constraints(const YamlNode& node, Diagnostics& dia
       reader.read_body(*body, aid);
     }
     reader.read_axes(entry.value, aid);
+    if (const YamlNode* rope = entry.value.find("rope")) reader.read_rope(*rope, aid);
     const auto named = [&](std::string_view axis) {
       return core::has_nearly(entry.value, axis) || entry.value.find(axis) != nullptr;
     };
-    if (std::ranges::none_of(kSpringAxes, named)) {
+    if (std::ranges::none_of(kSpringAxes, named) && !named("rope")) {
       diagnostics.error(entry.value.mark, "missing-key",
-                        "expected at least one of x, y, z, roll, pitch or yaw: an axis that is not "
-                        "named is free");
+                        "expected at least one of x, y, z, roll, pitch, yaw or rope: an axis that "
+                        "is not named is free");
     }
   }
   return list;

@@ -1,6 +1,6 @@
-// External aids: springs between one body of the robot and the world, each axis on its own. A
-// planarizer, a hoist, a hold and a harness differ only in their axes. Worlds (`constraints:`) and
-// scenarios (`hold:`) read them here; the law is sim/springs.h.
+// External aids: springs between one body of the robot and the world, each axis on its own, and
+// ropes. A planarizer, a hoist and a hold differ only in their axes; a harness is a rope. Worlds
+// (`constraints:`) and scenarios (`hold:`) read them here; the law is sim/springs.h.
 #pragma once
 
 #include <array>
@@ -31,10 +31,21 @@ struct AxisSpring {
   core::Mark mark;                              // of the stiffness, else of the axis' map
 };
 
+// A rope between a point of the body and a fixed place: a spring while it is taut, else nothing.
+struct Rope {
+  std::array<double, 3> to{};     // m, world
+  std::array<double, 3> from{};   // m, of the body's frame
+  double length = 0.0;            // m, slack
+  double stiffness = 0.0;         // N/m
+  std::optional<double> damping;  // N s/m; nullopt: critical for the robot's mass
+  core::Mark mark;                // of the stiffness, else of the map
+};
+
 struct BodySprings {
   std::string name;  // empty: a hold
   NamedLink body;
   std::array<std::optional<AxisSpring>, 6> axes;  // by kSpringAxes; nullopt: free
+  std::optional<Rope> rope;
   bool all = false;  // a hold that names no axes: every axis, of a body that is no root x y z
 
   // Whether an axis has a stiffness or a damping of its own, which may be unstable.

@@ -15,6 +15,9 @@ namespace footfall::sim {
 // An angle within half a radian: `axis_tilts`.
 std::optional<double> read_tilt(const core::YamlNode& node, core::Diagnostics& diagnostics);
 
+// An angle within a turn: `start: {joints}`.
+std::optional<double> read_turn(const core::YamlNode& node, core::Diagnostics& diagnostics);
+
 using ReadValue = std::optional<double> (*)(const core::YamlNode&, core::Diagnostics&);
 
 struct ByJoint {

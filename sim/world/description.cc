@@ -45,15 +45,26 @@ std::optional<double> read_tilt(const core::YamlNode& node, Diagnostics& diagnos
                             "an angle within 0.5 rad");
 }
 
+std::optional<double> read_turn(const core::YamlNode& node, Diagnostics& diagnostics) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  return core::read_bounded(node, core::kNone, -kTurn, kTurn, diagnostics, "an angle");
+}
+
 std::vector<double> axis_tilts(const WorldDescription& world, const model::RobotDescription& robot,
                                Diagnostics& diagnostics) {
   return by_joint(world.axis_tilts, read_tilt, robot, diagnostics);
+}
+
+std::vector<double> start_joints(const WorldDescription& world,
+                                 const model::RobotDescription& robot, Diagnostics& diagnostics) {
+  return by_joint(world.start_joints, read_turn, robot, diagnostics);
 }
 
 void check_actuators(const WorldDescription& world, const model::RobotDescription& robot,
                      Diagnostics& diagnostics) {
   check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
   axis_tilts(world, robot, diagnostics);
+  start_joints(world, robot, diagnostics);
   if (world.actuators.model != ActuatorModel::ideal || !world.variation.draws_actuators()) return;
   // `ideal` on top of a base's elastic actuators takes their draws away, too.
   if (world.actuators.file != world.variation.actuators.file) return;

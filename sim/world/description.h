@@ -91,6 +91,8 @@ struct WorldDescription {
   model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
   std::vector<model::NamedLink> links;  // of its `com` and its constraints
   std::vector<model::BodySprings> constraints;
+  ByJoint start_joints;           // rad, beside the robot's posture
+  double start_height = 0.0;      // m, of the lowest foot above the ground
   ByJoint axis_tilts;             // rad, each joint's frame about its z, in the simulation only
   double planner_latency = 2e-3;  // s, between planner request and plan, in lock-step
   model::Variation variation;     // what a seed draws
@@ -118,6 +120,12 @@ WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);
 // Reports everything that a world asks for and this simulator does not support (id "unsupported"),
 // so that nothing in a file is ignored silently.
 void check_supported(const WorldDescription& world, core::Diagnostics& diagnostics);
+
+// Angles of a robot's joints beside its posture, in which it starts before anything is drawn;
+// reports joints that it does not have.
+std::vector<double> start_joints(const WorldDescription& world,
+                                 const model::RobotDescription& robot,
+                                 core::Diagnostics& diagnostics);
 
 // The tilts of a robot's joints; reports joints that it does not have.
 std::vector<double> axis_tilts(const WorldDescription& world, const model::RobotDescription& robot,

@@ -29,6 +29,7 @@ constexpr KeySpec kWorldRows[] = {
         "of joints about the z axis of their frame, in the simulation and not in the controller's "
         "model; what hangs on the joint turns, too")
         .otherwise("0 rad"),
+    key("start", map_of(kStartKeys), "how the robot begins, before anything is drawn"),
     key("planner_latency", quantity(kTime), "time from a planner request to its answer")
         .otherwise("2 ms"),
     key("variation", map_of(model::kVariationKeys), "what a seed draws"),
@@ -165,6 +166,13 @@ constexpr KeySpec kPhysicsRows[] = {
         .otherwise("50 rad/s"),
 };
 
+constexpr KeySpec kStartRows[] = {
+    key("joints", by_axis(quantity(kNone, "an angle")),
+        "beside the robot's `posture`: for all joints or by joint")
+        .otherwise("0 rad"),
+    key("height", quantity(kLength), "of the lowest foot above the ground").otherwise("0 m"),
+};
+
 constexpr KeySpec kStandRows[] = {
     key("inertia", quantity(kInertia), "of every joint").otherwise("0.1 kg m^2"),
     key("stiffness", quantity(kTorque, "a stiffness"), "of every joint's spring; 0: free joints")
@@ -209,6 +217,8 @@ constinit const core::KeyTable kControlModelKeys = {
     .keys = kControlModelRows};
 constinit const core::KeyTable kPhysicsKeys = {
     .id = "physics", .doc = "MuJoCo's settings.", .keys = kPhysicsRows};
+constinit const core::KeyTable kStartKeys = {
+    .id = "world_start", .doc = "How the robot begins.", .keys = kStartRows};
 constinit const core::KeyTable kStandKeys = {
     .id = "stand",
     .doc =

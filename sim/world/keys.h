@@ -20,6 +20,7 @@ extern const core::KeyTable kMocapSensorKeys;
 extern const core::KeyTable kSwitchKeys;
 extern const core::KeyTable kControlModelKeys;
 extern const core::KeyTable kPhysicsKeys;
+extern const core::KeyTable kStartKeys;
 extern const core::KeyTable kStandKeys;
 extern const std::span<const core::WordSpec> kActuatorModels;  // in the order of ActuatorModel
 extern const std::span<const core::WordSpec> kIntegrators;     // in the order of Integrator

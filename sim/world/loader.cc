@@ -47,6 +47,7 @@ class WorldLoader {
       world_.axis_tilts = {*node, diagnostics_.file(node->mark.file)};
       check_by_joint(*node, read_tilt, "an angle by joint", diagnostics_);
     }
+    if (const YamlNode* node = root.find("start")) read_start(*node);
     if (const YamlNode* node = root.find("constraints")) read_constraints(*node);
     if (const YamlNode* node = root.find("physics")) read_physics(*node);
     if (const YamlNode* node = root.find("stand")) read_stand(*node);
@@ -244,6 +245,19 @@ class WorldLoader {
     if (const YamlNode* solref = node.find("solref")) read_solref(*solref);
     if (const YamlNode* solimp = node.find("solimp")) read_solimp(*solimp);
     read_bounded(node, "hands", core::kRate, 1.0, 200.0, physics.hands);
+  }
+
+  void read_start(const YamlNode& node) {
+    if (!core::expect_map(node, "a start: {joints: {JOINT: ANGLE}, height: VALUE}", diagnostics_)) {
+      return;
+    }
+    core::check_keys(node, kStartKeys, diagnostics_);
+    constexpr double kHighest = 10.0;  // m
+    read_bounded(node, "height", core::kLength, 0.0, kHighest, world_.start_height, "a height");
+    if (const YamlNode* joints = node.find("joints")) {
+      world_.start_joints = {*joints, diagnostics_.file(joints->mark.file)};
+      check_by_joint(*joints, read_turn, "an angle by joint", diagnostics_);
+    }
   }
 
   void read_stand(const YamlNode& node) {

@@ -95,8 +95,12 @@ TEST_F(Constraints, MistakesAreErrorsAtTheirPlace) {
             "...}}}, got a list\n");
   EXPECT_EQ(
       problems_of("{body: torso}"),
-      "2:20: error: expected at least one of x, y, z, roll, pitch or yaw: an axis that is not "
-      "named is free\n");
+      "2:20: error: expected at least one of x, y, z, roll, pitch, yaw or rope: an axis that is "
+      "not named is free\n");
+  EXPECT_EQ(problems_of("{body: torso, rope: {to: [0 m, 0 m, 4 m], stiffness: 1 N/m}}"),
+            "2:40: error: the key 'length' is missing\n");
+  EXPECT_EQ(problems_of("{body: torso, rope: {to: [0 m, 4 m], length: 1 m, stiffness: 1 N/m}}"),
+            "2:45: error: expected three lengths [x, y, z], got a list\n");
   EXPECT_EQ(problems_of("{z: {stiffness: 1 N/m}}"), "2:20: error: the key 'body' is missing\n");
   EXPECT_EQ(problems_of("{body: torso, ptch: {stiffness: 1 Nm}}"),
             "2:34: error: unknown key 'ptch' (did you mean 'pitch'?)\n");

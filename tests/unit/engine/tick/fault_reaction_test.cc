@@ -359,25 +359,33 @@ machine:
   EXPECT_THROW(rig.loop->start(), std::runtime_error);
 }
 
-// A behavior that marks no step may hold a foot up for as long as it likes.
-TEST(Faults, AFootInTheAirIsASwingOnlyOfABehaviorThatSteps) {
-  for (const bool steps : {false, true}) {
+// A behavior that marks no step may hold a foot up for as long as it likes, and one that relies on
+// no foot at all hangs on something.
+TEST(Faults, AFootInTheAirIsASwingOnlyOfABehaviorThatStepsOnAnother) {
+  struct Case {
+    const char* mark;
+    const char* contacts;
+    bool swings;
+  };
+  for (const auto& [mark, contacts, swings] :
+       {Case{"pose", "[right_foot]", false}, Case{"step", "[right_foot]", true},
+        Case{"step", "[]", false}}) {
     StubRig rig(fmt::format(R"(
 behavior: 1
 robot: hume
 machine:
   tasks: {{rest: {{type: joint_damping, priority: 1, gains: {{kd: 5}}}}}}
-  states: {{stand: {{on_entry: [{{mark: {}}}]}}}}
+  states: {{stand: {{contacts: {}, on_entry: [{{mark: {}}}]}}}}
 )",
-                            steps ? "step" : "pose"),
+                            contacts, mark),
                 1e6, [](int contact, double) { return contact == 0; });
     rig.loop->start();
     for (int k = 0; k < 1500; ++k) rig.loop->tick();  // 1 s
     EXPECT_EQ(rig.faults(Fault::swing_too_long), 0);
     rig.loop->tick();
-    EXPECT_EQ(rig.faults(Fault::swing_too_long), steps ? 1 : 0);
-    EXPECT_EQ(rig.loop->state(), steps ? engine::LoopState::fallen : engine::LoopState::running);
-    EXPECT_EQ(rig.loop->last_place(Fault::swing_too_long).joint, steps ? 1 : -1);
+    EXPECT_EQ(rig.faults(Fault::swing_too_long), swings ? 1 : 0);
+    EXPECT_EQ(rig.loop->state(), swings ? engine::LoopState::fallen : engine::LoopState::running);
+    EXPECT_EQ(rig.loop->last_place(Fault::swing_too_long).joint, swings ? 1 : -1);
   }
 }
 

@@ -90,6 +90,7 @@ std::string parts_of() {
     constexpr std::size_t kSize = std::tuple_size_v<Value>;
     return (kSize == core::kMaxJoints     ? ".JOINT"
             : kSize == core::kMaxContacts ? ".CONTACT"
+            : kSize == core::kMaxMarkers  ? ".MARKER"
             : kSize == 4                  ? ".w x y z"
                                           : ".x y z") +
            parts_of<typename Value::value_type>();
@@ -106,9 +107,11 @@ TEST(InputLayout, TheDocumentOfTheLogHasEveryColumnAndFlag) {
   hal::for_each_field(hal::kSensorFields, add);
   std::string flags = "| 1 | something new arrived |\n";
   hal::for_each_field(hal::kFlagFields, [&]<typename Value>(const hal::FlagField<Value>& f) {
-    const bool each = !std::is_same_v<Value, bool>;
-    flags +=
-        "| " + std::to_string(f.bit) + (each ? " << c" : "") + " | " + std::string(f.doc) + " |\n";
+    std::string each;
+    if constexpr (!std::is_same_v<Value, bool>) {
+      each = std::tuple_size_v<Value> == core::kMaxMarkers ? " << m" : " << c";
+    }
+    flags += "| " + std::to_string(f.bit) + each + " | " + std::string(f.doc) + " |\n";
   });
   std::ifstream in(FOOTFALL_SOURCE_DIR "/docs/log.md");
   const std::string text{std::istreambuf_iterator<char>(in), {}};
