@@ -67,7 +67,7 @@ struct LogSource {
   double friction = 0.0;                                 // of the ground; 0: unknown
   bool elastic = false;                                  // series-elastic actuators
   bool sensor_errors = false;                            // the world's sensors have errors
-  std::vector<std::string> markers;                      // of motion capture, by name
+  std::vector<std::string> markers;                      // by name; empty: the robot's, if logged
   int row_every = 6;                                     // ticks; 1: derived signals of all ticks
 };
 
