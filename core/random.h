@@ -1,5 +1,5 @@
 // Numbers of a seed, the same with every standard library: the output of std::mt19937_64 is
-// standardized, that of the distributions of <random> is not. Load time only.
+// standardized, that of the distributions of <random> is not. Nothing allocates.
 #pragma once
 
 #include <cmath>
@@ -15,10 +15,12 @@ inline double uniform(std::mt19937_64& engine) {
 }
 
 // Normal with deviation 1, by Marsaglia's polar method; equal to std::normal_distribution of
-// libstdc++ likewise. Numbers come in pairs: the second is kept for the next call.
+// libstdc++ likewise. Numbers come in pairs: the second is kept for the next call. Another engine
+// has a function uniform() beside it.
 class Normal {
  public:
-  double operator()(std::mt19937_64& engine) {
+  template <typename Engine>
+  double operator()(Engine& engine) {
     if (kept_) {
       kept_ = false;
       return second_;

@@ -15,9 +15,6 @@
 namespace footfall::sim {
 namespace {
 
-constexpr int kGround = -1;
-constexpr int kOtherBody = -2;
-
 // The foot geom of a contact: the collision sphere centred at its site.
 int foot_geom(const mjModel* m, const mjData* d, int site) {
   for (int g = 0; g < m->ngeom; ++g) {
@@ -58,6 +55,7 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
     }
     actuator_.push_back(actuator);
   }
+  std::vector<int> balls;
   contact_of_geom_.assign(at(model_->ngeom), kOtherBody);
   for (int g = 0; g < model_->ngeom; ++g) {
     if (model_->geom_bodyid[g] == 0) contact_of_geom_[at(g)] = kGround;
@@ -70,7 +68,10 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
                                "' has no collision sphere centred at its site in the model");
     }
     contact_of_geom_[at(geom)] = static_cast<int>(c);
+    balls.push_back(geom);
   }
+  if (world.height_error > 0.0) footholds_.emplace(*model_, world, balls);
+  mount_sensors();
   attach_constraints();
   const double step = model_->opt.timestep;
   const auto delay = static_cast<std::size_t>(std::llround(world.actuators.command_delay / step));
@@ -149,6 +150,7 @@ void MujocoBackend::place_at_posture() {
 }
 
 void MujocoBackend::start() {
+  if (footholds_) footholds_->start(*model_);
   place_at_posture();
   attach_constraints();
   for (auto& line : delay_line_) std::fill(line.begin(), line.end(), 0.0);
@@ -158,6 +160,7 @@ void MujocoBackend::start() {
     drive_torques_ = {};
     drive_->start({joint_angles_.data(), qpos_.size()}, {drive_torques_.data(), qpos_.size()});
   }
+  start_sensors();
   pushes_ = {};
   aid_force_ = {};
   held_ = {};
@@ -186,55 +189,6 @@ std::int64_t MujocoBackend::warnings() const noexcept {
   return sum;
 }
 
-bool MujocoBackend::read(hal::Sensors& s) noexcept {
-  s.time_ns = tick_ * 1'000'000'000'000LL / robot_.rate_mhz;
-  for (std::size_t j = 0; j < qpos_.size(); ++j) {
-    s.q[j] = data_->qpos[qpos_[j]];
-    s.qd[j] = data_->qvel[dof_[j]];
-    s.tau[j] = data_->actuator_force[actuator_[j]];
-  }
-  s.motor_saturated = false;
-  if (drive_) drive_->read(s);
-  s.has_truth = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    s.p_WB[k] = data_->qpos[k];
-    s.v_WB[k] = data_->qvel[k];
-    s.w_WB_B[k] = data_->qvel[3 + k];
-  }
-  for (std::size_t k = 0; k < 4; ++k) s.q_WB[k] = data_->qpos[3 + k];
-  s.gyro = s.w_WB_B;
-  sense_contacts(s);
-  for (std::size_t k = 0; k < 3; ++k)
-    s.aid_force[k] = aid_force_[k] / world_.physics.steps_per_tick;
-  s.backend_fault = warnings() != warnings_at_start_;
-  return true;
-}
-
-// Contacts of the last physics step: forces on the feet, and contact of any other body.
-void MujocoBackend::sense_contacts(hal::Sensors& s) noexcept {
-  s.contact.fill(false);
-  for (auto& f : s.force) f = {};
-  s.body_contact = false;
-  for (int i = 0; i < data_->ncon; ++i) {
-    const mjContact& con = data_->contact[i];
-    if (con.exclude != 0 || con.efc_address < 0) continue;
-    std::array<double, 6> local{};
-    mj_contactForce(model_, data_, i, local.data());
-    if (!(local[0] > 0.0)) continue;
-    std::array<double, 3> world{};
-    mju_mulMatTVec(world.data(), con.frame, local.data(), 3, 3);
-    const std::array<int, 2> geoms = {con.geom1, con.geom2};
-    for (std::size_t side = 0; side < 2; ++side) {
-      const int owner = contact_of_geom_[at(geoms[side])];
-      if (owner == kOtherBody) s.body_contact = true;
-      if (owner < 0) continue;
-      if (contact_of_geom_[at(geoms[1 - side])] == kGround) s.contact[at(owner)] = true;
-      const double sign = side == 1 ? 1.0 : -1.0;  // the force acts on geom2
-      for (std::size_t k = 0; k < 3; ++k) s.force[at(owner)][k] += sign * world[k];
-    }
-  }
-}
-
 void MujocoBackend::write(const hal::Commands& commands) noexcept {
   aid_force_ = {};
   for (int step = 0; step < world_.physics.steps_per_tick; ++step) {
@@ -246,6 +200,7 @@ void MujocoBackend::write(const hal::Commands& commands) noexcept {
     apply_forces();
     mj_step(model_, data_);
   }
+  if (footholds_) footholds_->update(*model_, *data_);
   ++tick_;
 }
 

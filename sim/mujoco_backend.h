@@ -10,7 +10,9 @@
 
 #include "hal/actuators/drive.h"
 #include "hal/hardware.h"
+#include "hal/sensors/suite.h"
 #include "model/robot/description.h"
+#include "sim/footholds.h"
 #include "sim/springs.h"
 #include "sim/world/description.h"
 #include "sim/world/push.h"
@@ -60,6 +62,8 @@ class MujocoBackend final : public hal::Hardware {
   void set_torque_loop(int joint, const hal::TorqueLoopGains& gains) noexcept override;
   // Of series-elastic actuators; nullptr: they are ideal.
   const hal::SeriesElasticDrive* drive() const noexcept { return drive_ ? &*drive_ : nullptr; }
+  // Errors of the ground's height; nullptr: it has none.
+  const Footholds* footholds() const noexcept { return footholds_ ? &*footholds_ : nullptr; }
 
   // Starts a push on a body's CoM; direction in rad from the robot's heading, 0 forward, pi/2 left.
   // Names were checked by find_body(). False if kMaxPushes are active.
@@ -84,7 +88,10 @@ class MujocoBackend final : public hal::Hardware {
   void apply_forces() noexcept;
   void update_positions() noexcept;
   void attach_constraints();
+  void mount_sensors();
+  void start_sensors();
   void sense_contacts(hal::Sensors& sensors) noexcept;
+  void find_truth(const hal::Sensors& sensors) noexcept;
   std::int64_t warnings() const noexcept;
   void tilt_axes();
   void refuse_stiff_springs();
@@ -95,11 +102,16 @@ class MujocoBackend final : public hal::Hardware {
   mjModel_* model_ = nullptr;
   mjData_* data_ = nullptr;
   std::vector<int> qpos_, dof_, actuator_;  // by joint of the robot file
-  std::vector<int> contact_of_geom_;        // robot contact index, -1: ground, -2: another body
+  static constexpr int kGround = -1, kOtherBody = -2;
+  std::vector<int> contact_of_geom_;             // robot contact index, or one of these
   std::vector<std::vector<double>> delay_line_;  // commands on their way, one a physics step
   std::size_t delay_head_ = 0;
   std::optional<hal::SeriesElasticDrive> drive_;
   std::array<double, core::kMaxJoints> joint_angles_{}, joint_rates_{}, drive_torques_{};
+  std::optional<hal::SensorSuite> sensors_;
+  hal::SensorTruth truth_;
+  int base_body_ = 1;
+  std::optional<Footholds> footholds_;  // of a world with errors of the ground's height
   std::array<ActivePush, kMaxPushes> pushes_{};
   std::array<ActiveSprings, kMaxHeld> held_{};
   std::array<double, 3> aid_force_{};       // N, world: sum over the last tick's physics steps

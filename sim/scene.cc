@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/footholds.h"
+
 namespace footfall::sim {
 namespace {
 
@@ -32,24 +34,49 @@ const char* solver_name(Solver s) {
 
 // The ground's friction must apply: with equal priority MuJoCo takes the larger one of a pair. All
 // that defaults of the robot's file could change is written out.
-std::string contact_attributes(const WorldDescription& world) {
+std::string contact_attributes(const WorldDescription& world, int group = 0) {
   const PhysicsSettings& p = world.physics;
   return fmt::format(
-      "contype=\"1\" conaffinity=\"1\" margin=\"0\" gap=\"0\" group=\"0\" "
+      "contype=\"1\" conaffinity=\"1\" margin=\"0\" gap=\"0\" group=\"{}\" "
       "priority=\"1\" condim=\"3\" friction=\"{:.17g} 0 0\" solref=\"{:.17g} {:.17g}\" "
       "solimp=\"{:.17g} {:.17g} {:.17g}\"",
-      world.friction, p.solref[0], p.solref[1], p.solimp[0], p.solimp[1], p.solimp[2]);
+      group, world.friction, p.solref[0], p.solref[1], p.solimp[0], p.solimp[1], p.solimp[2]);
+}
+
+std::string plane_xml(const std::string& name, const std::string& attributes) {
+  return fmt::format(
+      "<geom name=\"{}\" type=\"plane\" pos=\"0 0 0\" quat=\"1 0 0 0\" size=\"0 0 .5\" {}/>\n",
+      name, attributes);
+}
+
+std::string box_xml(const std::string& name, const TerrainBox& box, const std::string& attributes) {
+  return fmt::format(
+      "<geom name=\"{}\" type=\"box\" quat=\"1 0 0 0\" pos=\"{:.17g} {:.17g} {:.17g}\" "
+      "size=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
+      name, box.at[0], box.at[1], 0.5 * box.size[2], 0.5 * box.size[0], 0.5 * box.size[1],
+      0.5 * box.size[2], attributes);
 }
 
 std::string terrain_xml(const WorldDescription& world) {
   std::string xml;
   int index = 0;
   for (const TerrainBox& box : world.terrain) {
-    xml += fmt::format(
-        "<geom name=\"terrain_{}\" type=\"box\" quat=\"1 0 0 0\" pos=\"{:.17g} {:.17g} {:.17g}\" "
-        "size=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
-        index++, box.at[0], box.at[1], 0.5 * box.size[2], 0.5 * box.size[0], 0.5 * box.size[1],
-        0.5 * box.size[2], contact_attributes(world));
+    xml += box_xml(fmt::format("terrain_{}", index++), box, contact_attributes(world));
+  }
+  return xml;
+}
+
+// Of Footholds; a group that is not drawn.
+std::string footholds_xml(const model::RobotDescription& robot, const WorldDescription& world) {
+  if (!(world.height_error > 0.0)) return {};
+  constexpr int kHidden = 5;
+  const std::string attributes = contact_attributes(world, kHidden);
+  std::string xml;
+  for (std::size_t c = 0; c < robot.contacts.size(); ++c) {
+    xml += plane_xml(foothold_name(c, 0), attributes);
+    for (std::size_t k = 0; k < world.terrain.size(); ++k) {
+      xml += box_xml(foothold_name(c, k + 1), world.terrain[k], attributes);
+    }
   }
   return xml;
 }
@@ -70,10 +97,8 @@ std::string scene_xml(const model::RobotDescription& robot, const WorldDescripti
       p.cone == Cone::elliptic ? "elliptic" : "pyramidal", p.impratio, p.iterations, p.tolerance);
   xml += "<size njmax=\"-1\" nconmax=\"-1\" nstack=\"-1\"/>\n";
   xml += "<worldbody>\n";
-  xml += fmt::format(
-      "<geom name=\"ground\" type=\"plane\" pos=\"0 0 0\" quat=\"1 0 0 0\" size=\"0 0 .5\" {}/>\n",
-      contact_attributes(world));
-  xml += terrain_xml(world);
+  xml += plane_xml("ground", contact_attributes(world));
+  xml += terrain_xml(world) + footholds_xml(robot, world);
   xml += "</worldbody>\n</mujoco>\n";
   return xml;
 }

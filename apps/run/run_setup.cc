@@ -114,6 +114,10 @@ std::string more_physics(const sim::WorldDescription& world) {
   if (world.actuators.model == sim::ActuatorModel::series_elastic) {
     text += ", series-elastic actuators";
   }
+  if (world.sensors.errors.any()) text += ", sensors with errors";
+  if (world.height_error > 0.0) {
+    text += fmt::format(", ground height +-{:.3g} mm a step", world.height_error * 1e3);
+  }
   if (world.actuators.command_delay > 0.0) {
     text += fmt::format(", command delay {:.3g} ms", world.actuators.command_delay * 1e3);
   }
@@ -275,6 +279,7 @@ lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription
   if (options.backend == "mujoco") source.friction = world.friction;
   source.elastic = world.actuators.model == sim::ActuatorModel::series_elastic;
   source.aids = !world.constraints.empty();
+  source.sensor_errors = world.sensors.errors.any();
   source.settings = loop_settings(options, world);
   core::Diagnostics ignored;  // loaded before
   source.set = split_settings(options.set, ignored);

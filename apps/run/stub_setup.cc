@@ -39,6 +39,11 @@ hal::StubSettings stub_settings(const model::RobotDescription& robot,
   settings.stiffness = world.stand.stiffness;
   settings.damping = world.stand.damping;
   settings.swing = world.stand.swing;
+  settings.sensors = world.sensors.errors;
+  const bool mounted = !robot.sensors.imu_site.empty() || !robot.sensors.mocap_sites.empty();
+  settings.places =
+      sim::sensor_places(mounted ? model::sensor_mounts(robot) : model::SensorMounts(), robot);
+  settings.noise_seed = world.noise_seed;
   settings.drive_steps = stand_steps(world, robot);
   if (world.actuators.model == sim::ActuatorModel::series_elastic) {
     settings.drive = sim::drive_settings(world.actuators, robot, settings.drive_steps);

@@ -26,11 +26,14 @@ bool is_at_or_below(std::string_view key, std::string_view above) {
 
 // What a stand has of a world.
 bool acts_on_the_stub(const std::string& key) {
-  constexpr std::array<std::string_view, 7> kUsed = {
-      "actuators",           "stand",
-      "control_model",       "planner_latency",
-      "variation.actuators", "variation.command_delay",
-      "variation.start"};
+  constexpr std::array<std::string_view, 8> kUsed = {"actuators",
+                                                     "stand",
+                                                     "sensors",
+                                                     "control_model",
+                                                     "planner_latency",
+                                                     "variation.actuators",
+                                                     "variation.command_delay",
+                                                     "variation.start"};
   return key == "variation" ||
          std::ranges::any_of(kUsed, [&](auto used) { return is_at_or_below(key, used); });
 }

@@ -206,6 +206,7 @@ void check_world_fits(const sim::WorldDescription& world, const model::RobotDesc
                       core::Diagnostics& diagnostics,
                       const std::vector<model::BodySprings>& holds) {
   sim::check_actuators(world, robot, diagnostics);
+  sim::check_sensors(world.sensors, robot, diagnostics);
   if (world.actuators.model == sim::ActuatorModel::series_elastic) {
     behaviors::check_drives(robot, diagnostics);
   }

@@ -87,6 +87,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"no-mirror-image", kWarning, "an argument that the robot's symmetry does not exchange"},
     {"no-priority", kWarning, "a task without priority among others that have one"},
     {"no-script", kError, "an unreadable file of `scripts`"},
+    {"no-sensor", kWarning, "errors of sensors that the robot lacks"},
     {"no-time", kWarning, "a time that parameters make negative, in a chart without a robot"},
     {"no-value", kWarning,
      "a condition that a state fails in which its signal has no value; an expression that never "

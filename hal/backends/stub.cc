@@ -3,12 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 namespace footfall::hal {
 
-StubBackend::StubBackend(StubSettings settings) : settings_(std::move(settings)) {
+namespace {
+
+SensorPlaces places_of(const StubSettings& settings) {
+  SensorPlaces places = settings.places;
+  places.joints = settings.joints;
+  places.contacts = settings.contacts;
+  return places;
+}
+
+}  // namespace
+
+StubBackend::StubBackend(StubSettings settings)
+    : settings_(std::move(settings)),
+      sensors_(settings_.sensors, places_of(settings_), settings_.period, settings_.noise_seed) {
   if (settings_.joints < 0 || settings_.joints > core::kMaxJoints || settings_.contacts < 0 ||
       settings_.contacts > core::kMaxContacts) {
     throw std::runtime_error("stub backend: too many joints or contacts");
@@ -59,6 +73,7 @@ void StubBackend::start() {
   if (drive_) drive_->start(q_, tau_);
   delayed_.assign(static_cast<std::size_t>(settings_.command_delay) + 1, tau_);
   released_.fill(-1);
+  sensors_.start({.p_WB = settings_.base});
   tick_ = 0;
   stopped_ = false;
 }
@@ -69,15 +84,19 @@ bool StubBackend::read(Sensors& sensors) noexcept {
   std::copy(q_.begin(), q_.end(), sensors.q.begin());
   std::copy(qd_.begin(), qd_.end(), sensors.qd.begin());
   std::copy(tau_.begin(), tau_.end(), sensors.tau.begin());
+  std::copy(q_.begin(), q_.end(), truth_.q.begin());
+  std::copy(qd_.begin(), qd_.end(), truth_.qd.begin());
   if (drive_) drive_->read(sensors);
   for (int c = 0; c < settings_.contacts; ++c) {
-    sensors.contact[static_cast<std::size_t>(c)] = is_closed(c, time);
+    truth_.normal_force[static_cast<std::size_t>(c)] =
+        is_closed(c, time) ? std::numeric_limits<double>::infinity() : 0.0;
   }
   sensors.has_truth = true;
   sensors.p_WB = settings_.base;
   sensors.q_WB = {1.0, 0.0, 0.0, 0.0};
   sensors.v_WB = {};
   sensors.w_WB_B = {};
+  sensors_.sample(truth_, sensors);
   return true;
 }
 

@@ -1,7 +1,7 @@
 // A backend without contact physics: the robot on a stand. Its actuators, torque loops, delays and
-// sensors are real; each joint is an inertia, held by a spring where the stand has one; the base
-// does not move; contacts follow a script. It runs the same tick as a simulator or a robot, for
-// tests of the engine, of actuators and of a behavior's timing.
+// sensors are real with their errors; each joint is an inertia, held by a spring where the stand
+// has one; the base does not move; contacts follow a script. It runs the same tick as a simulator
+// or a robot, for tests of the engine, of actuators and of a behavior's timing.
 #pragma once
 
 #include <functional>
@@ -10,6 +10,7 @@
 
 #include "hal/actuators/drive.h"
 #include "hal/hardware.h"
+#include "hal/sensors/suite.h"
 
 namespace footfall::hal {
 
@@ -32,6 +33,11 @@ struct StubSettings {
   std::optional<DriveSettings> drive;
   int drive_steps = 1;
   int command_delay = 0;
+  // The base is at rest at `base`; of truths the CoM's is not there: it is 0. A contact that is
+  // closed has a force above every threshold.
+  SensorErrors sensors;
+  SensorPlaces places;  // its joints and contacts are those above
+  std::uint64_t noise_seed = 0;
 };
 
 class StubBackend final : public Hardware {
@@ -55,6 +61,8 @@ class StubBackend final : public Hardware {
   std::vector<double> q_, qd_, tau_;
   std::vector<SeriesElasticActuator> stand_;  // joints on its springs; empty: it has none
   std::optional<SeriesElasticDrive> drive_;
+  SensorSuite sensors_;
+  SensorTruth truth_;
   std::vector<std::vector<double>> delayed_;  // commands on their way to ideal actuators
   std::array<std::int64_t, core::kMaxContacts> released_{};  // by contact: the tick; -1: it is held
   std::int64_t tick_ = 0;

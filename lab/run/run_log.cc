@@ -13,6 +13,7 @@
 #include "lab/run/end.h"
 #include "lab/run/log_setup.h"
 #include "lab/run/version.h"
+#include "model/sensor_mounts.h"
 
 namespace footfall::lab {
 namespace {
@@ -203,6 +204,12 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
   header.names.aids = source.aids;
   header.names.estimation =
       source.sensor_errors || behavior.estimator.type != behaviors::EstimatorType::true_state;
+  if (header.names.estimation && source.markers.empty() &&
+      !behavior.robot.sensors.mocap_sites.empty()) {
+    for (const model::Marker& marker : model::sensor_mounts(behavior.robot).markers) {
+      header.names.markers.push_back(marker.name);
+    }
+  }
   header.run = {{"behavior", behavior.name},
                 {"robot", behavior.robot.name},
                 {"robot_file", behavior.robot.path},

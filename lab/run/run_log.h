@@ -68,7 +68,7 @@ struct LogSource {
   bool elastic = false;                                  // series-elastic actuators
   bool aids = false;                                     // the world has external aids
   bool sensor_errors = false;                            // the world's sensors have errors
-  std::vector<std::string> markers;                      // of motion capture, by name
+  std::vector<std::string> markers;                      // by name; empty: the robot's, if logged
   int row_every = 6;                                     // ticks; 1: derived signals of all ticks
 };
 

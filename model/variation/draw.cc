@@ -48,8 +48,20 @@ class Source {
         return spread.a * normal();
       case Spread::Kind::uniform:
         return spread.a + (spread.b - spread.a) * uniform();
+      case Spread::Kind::sign:
+        return uniform() < 0.5 ? spread.a : -spread.a;
+      case Spread::Kind::ring:  // has two numbers
+        return 0.0;
     }
     return 0.0;
+  }
+  std::array<double, 2> pair_of(const Spread& spread) {
+    if (spread.kind != Spread::Kind::ring) {
+      const double x = of(spread);
+      return {x, of(spread)};
+    }
+    const double direction = 2.0 * std::numbers::pi * uniform();
+    return {spread.a * std::cos(direction), spread.a * std::sin(direction)};
   }
   double uniform() { return core::uniform(random_); }
 
@@ -71,13 +83,14 @@ bool is_drawn(const Spread& spread) { return spread.kind != Spread::Kind::none; 
 
 double Spread::least() const {
   if (kind == Kind::none) return 0.0;
+  if (kind == Kind::sign || kind == Kind::ring) return -a;
   return kind == Kind::normal ? -kCut * a : a;
 }
 
 double Spread::most() const {
   if (kind == Kind::none) return 0.0;
   if (kind == Kind::normal) return kCut * a;
-  return kind == Kind::fixed ? a : b;
+  return kind == Kind::uniform ? b : a;
 }
 
 std::optional<double> Variation::least_friction() const {
@@ -91,8 +104,9 @@ bool Variation::draws_actuators() const { return is_drawn(spring) || is_drawn(co
 
 bool Variation::depends_on_seed() const {
   const auto varies = [](const Spread& spread) { return spread.least() < spread.most(); };
-  return varies(velocity) || varies(joints) || varies(rates) || varies(friction) || varies(mass) ||
-         varies(command_delay) || varies(spring) || varies(coulomb) || push.impulse > 0.0 ||
+  return noise || varies(velocity) || varies(joints) || varies(rates) || varies(friction) ||
+         varies(mass) || varies(command_delay) || varies(spring) || varies(coulomb) ||
+         push.impulse > 0.0 ||
          std::ranges::any_of(com, [&](const auto& link) { return varies(link.second); });
 }
 
@@ -111,11 +125,35 @@ void draw_actuators(const Variation& v, int joints, std::uint64_t seed, Draw& ou
   }
 }
 
+void draw_control_model(const Variation& v, const std::vector<std::string>& links,
+                        std::uint64_t seed, Draw& out) {
+  if (v.mass.kind == Spread::Kind::sign) {
+    out.mass = 1.0 + Source(seed, Stream::mass).of(v.mass);
+    out.values.emplace_back("control_model.mass", std::vector<double>{*out.mass});
+  } else if (is_drawn(v.mass)) {
+    Source source(seed, Stream::mass);
+    std::vector<double> factors;
+    for (const std::string& link : links) {
+      factors.push_back(1.0 + source.of(v.mass));
+      out.masses[link] = factors.back();
+    }
+    out.values.emplace_back("control_model.mass", std::move(factors));
+  }
+  Source com(seed, Stream::com);
+  for (const auto& [link, spread] : v.com) {
+    if (!is_drawn(spread)) continue;
+    const auto& shift = out.com[link] = com.pair_of(spread);
+    out.values.emplace_back("control_model.com." + link + "_m",
+                            std::vector<double>{shift.begin(), shift.end()});
+  }
+}
+
 }  // namespace
 
 Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
           std::uint64_t seed) {
   Draw out;
+  out.seed = seed;
   const auto tell = [&out](const char* name, std::vector<double> values) {
     out.values.emplace_back(name, std::move(values));
   };
@@ -138,22 +176,7 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
     out.friction = Source(seed, Stream::friction).of(v.friction);
     tell("friction", {*out.friction});
   }
-  if (is_drawn(v.mass)) {
-    Source source(seed, Stream::mass);
-    std::vector<double> factors;
-    for (const std::string& link : links) {
-      factors.push_back(1.0 + source.of(v.mass));
-      out.masses[link] = factors.back();
-    }
-    tell("control_model.mass", std::move(factors));
-  }
-  Source com(seed, Stream::com);
-  for (const auto& [link, spread] : v.com) {
-    if (!is_drawn(spread)) continue;
-    auto& shift = out.com[link];
-    for (double& x : shift) x = com.of(spread);
-    tell(("control_model.com." + link + "_m").c_str(), {shift.begin(), shift.end()});
-  }
+  draw_control_model(v, links, seed, out);
   if (is_drawn(v.command_delay)) {
     out.command_delay = Source(seed, Stream::command_delay).of(v.command_delay);
     tell(kDelayName, {*out.command_delay});

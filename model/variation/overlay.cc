@@ -63,8 +63,12 @@ void prepare(YamlNode& base, const YamlNode& own, const KeyTable* table) {
       prepare(*below, entry.value, table == &kVariationKeys ? table_below(entry.key) : nullptr);
     }
   }
-  if (own.find("sd") != nullptr) erase(base, "range");
-  if (own.find("range") != nullptr) erase(base, "sd");
+  for (const core::KeySpec& kind : kSpreadKeys.keys) {
+    if (own.find(kind.name) == nullptr) continue;
+    for (const core::KeySpec& other : kSpreadKeys.keys) {
+      if (other.name != kind.name) erase(base, other.name);
+    }
+  }
 }
 
 }  // namespace

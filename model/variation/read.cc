@@ -19,6 +19,8 @@ constexpr KeySpec kSpreadRows[] = {
     key("sd", any_quantity(),
         "standard deviation of a normal distribution around 0, cut at three of them"),
     key("range", pair(any_quantity()), "ends of a uniform distribution"),
+    key("sign", any_quantity(), "this or minus this, either with the same probability"),
+    key("ring", any_quantity(), "of a centre of mass: this far in a uniform horizontal direction"),
 };
 
 constexpr KeySpec kVariedStartRows[] = {
@@ -29,7 +31,8 @@ constexpr KeySpec kVariedStartRows[] = {
 };
 
 constexpr KeySpec kVariedModelRows[] = {
-    key("mass", map_of(kSpreadKeys), any_quantity(), "relative change of each link's mass"),
+    key("mass", map_of(kSpreadKeys), any_quantity(),
+        "relative change of each link's mass; a `sign` is one for all links"),
     key("com", by_name(map_of(kSpreadKeys)),
         "shift of a link's centre of mass, x and y each, by link"),
 };
@@ -74,7 +77,9 @@ class Reader {
     if (const YamlNode* node = map.find(name)) out = read(*node, dimension, least, most);
   }
 
-  Spread read(const YamlNode& node, Dimension dimension, double least, double most) {
+  // `pair`: of two numbers, x and y.
+  Spread read(const YamlNode& node, Dimension dimension, double least, double most,
+              bool pair = false) {
     Spread out;
     if (is_off(node)) return out;
     if (!node.is_map()) {
@@ -83,13 +88,26 @@ class Reader {
       return out;
     }
     check_keys(node, kSpreadKeys, diagnostics_);
-    const YamlNode* const sd = node.find("sd");
+    if (node.entries.size() != 1) {
+      diagnostics_.error(node.mark, "missing-key",
+                         "expected 'sd', 'range', 'sign' or 'ring', one of them");
+      return out;
+    }
+    if (const YamlNode* sd = node.find("sd")) return read_normal(*sd, dimension, least, most);
+    if (const YamlNode* size = node.find("sign")) {
+      return read_size(*size, dimension, std::min(-least, most), Spread::Kind::sign);
+    }
+    if (const YamlNode* size = node.find("ring")) {
+      if (!pair) {
+        diagnostics_.error(size->mark, "misplaced-key",
+                           "a ring is of a centre of mass: expected 'sd', 'range' or 'sign'");
+        return out;
+      }
+      return read_size(*size, dimension, std::min(-least, most), Spread::Kind::ring);
+    }
     const YamlNode* const range = node.find("range");
-    if ((sd == nullptr) == (range == nullptr)) {
-      diagnostics_.error(node.mark, "missing-key", "expected 'sd' or 'range', one of them");
-    } else if (sd != nullptr) {
-      out = read_normal(*sd, dimension, least, most);
-    } else if (const auto ends = read_range(*range, dimension, diagnostics_)) {
+    if (range == nullptr) return out;  // told
+    if (const auto ends = read_range(*range, dimension, diagnostics_)) {
       if ((*ends)[0] < least || (*ends)[1] > most) {
         diagnostics_.error(range->mark, "out-of-range",
                            fmt::format("expected a range within {:g} and {:g}", least, most));
@@ -97,6 +115,17 @@ class Reader {
       out = {Spread::Kind::uniform, (*ends)[0], (*ends)[1]};
     }
     return out;
+  }
+
+  // Of a distribution on both sides of 0.
+  Spread read_size(const YamlNode& size, Dimension dimension, double most, Spread::Kind kind) {
+    if (most <= 0.0) {
+      diagnostics_.error(size.mark, "out-of-range",
+                         "half of the draws would be below zero: expected {range: [FROM, TO]}");
+      return {};
+    }
+    const auto value = read_bounded(size, dimension, 0.0, most, diagnostics_);
+    return value ? Spread{kind, *value, 0.0} : Spread{};
   }
 
   // Three standard deviations, where the distribution is cut, must lie within what can be drawn.
@@ -157,7 +186,7 @@ class Reader {
       if (others != nullptr && is_off(*others)) clear_com(out);
       for (const YamlEntry& entry : com->entries) {
         if (&entry.value == others && is_off(*others)) continue;
-        out.com[entry.key] = read(entry.value, kLength, -1.0, 1.0);
+        out.com[entry.key] = read(entry.value, kLength, -1.0, 1.0, true);
         out.links.push_back(named_link(entry, diagnostics_));
       }
     }
@@ -221,8 +250,12 @@ void check_links(const std::vector<NamedLink>& links, const std::vector<std::str
 }
 
 Variation read_variation(const YamlNode& node, const Variation& base, Diagnostics& diagnostics) {
-  if (Reader::is_off(node)) return {};
   Variation out = base;
+  if (Reader::is_off(node)) {
+    out = {};
+    out.noise = base.noise;
+    return out;
+  }
   if (!expect_map(node, "a map of what a seed draws, or off", diagnostics)) return out;
   check_keys(node, kVariationKeys, diagnostics);
   Reader reader(diagnostics);

@@ -19,9 +19,11 @@ namespace footfall::model {
 
 // A distribution of one number, SI. A normal one is cut at three standard deviations.
 struct Spread {
-  enum class Kind : std::uint8_t { none, fixed, normal, uniform };
+  enum class Kind : std::uint8_t { none, fixed, normal, uniform, sign, ring };
   Kind kind = Kind::none;
-  double a = 0.0, b = 0.0;  // fixed: a; normal: mean 0, standard deviation a; uniform: from a to b
+  // fixed: a; normal: mean 0, standard deviation a; uniform: from a to b; sign: a or -a; ring: of
+  // two numbers, at the distance a from 0 in a uniform direction.
+  double a = 0.0, b = 0.0;
 
   // The least and the most that can be drawn; 0 if nothing is.
   double least() const;
@@ -50,11 +52,11 @@ void check_links(const std::vector<NamedLink>& links, const std::vector<std::str
                  core::Diagnostics& diagnostics);
 
 struct Variation {
-  Spread velocity;                    // m/s, of the base at the start, x and y each
-  Spread joints;                      // rad, each joint's angle at the start, from its posture
-  Spread rates;                       // rad/s, of the base at the start, about each of its axes
-  Spread friction;                    // of the ground, in the place of the world's
-  Spread mass;                        // relative change of each link's mass in the control model
+  Spread velocity;  // m/s, of the base at the start, x and y each
+  Spread joints;    // rad, each joint's angle at the start, from its posture
+  Spread rates;     // rad/s, of the base at the start, about each of its axes
+  Spread friction;  // of the ground, in the place of the world's
+  Spread mass;      // relative change of each link's mass in the control model; sign: one for all
   std::map<std::string, Spread> com;  // m, x and y of a link's CoM in the control model
   std::vector<NamedLink> links;       // those of `com`, as named
   Spread command_delay;               // s, added to the world's
@@ -62,6 +64,7 @@ struct Variation {
   Spread coulomb;                     // relative change of each actuator's Coulomb friction
   NamedLink actuators;                // where these two stand
   PushSpread push;
+  bool noise = false;  // the world's sensors or its ground have random errors; no key here
 
   // The least friction that can be drawn; nullopt: it is not drawn.
   std::optional<double> least_friction() const;
@@ -96,10 +99,12 @@ struct DrawnPush {
 
 // What one seed drew. Empty or nullopt: not drawn.
 struct Draw {
+  std::uint64_t seed = 0;            // that drew
   std::vector<double> joints;        // rad, by joint of the robot file
   std::array<double, 2> velocity{};  // m/s
   std::array<double, 3> rates{};     // rad/s
   std::optional<double> friction;
+  std::optional<double> mass;                        // factor, of all links
   std::map<std::string, double> masses;              // factor, by link
   std::map<std::string, std::array<double, 2>> com;  // m, by link
   std::optional<double> command_delay;               // s, added

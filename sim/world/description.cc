@@ -15,10 +15,6 @@ namespace footfall::sim {
 using core::Diagnostics;
 
 void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
-  const auto refuse = [&diagnostics](core::Mark mark, std::string_view what) {
-    diagnostics.error(mark, "unsupported",
-                      fmt::format("the simulator does not support {} yet", what));
-  };
   for (const ActuatorSettings::Key& key : world.actuators.elastic_keys) {
     if (world.actuators.model == ActuatorModel::series_elastic) break;
     // `ideal` on top of a base's elastic actuators takes their imperfections away, too.
@@ -27,9 +23,6 @@ void check_supported(const WorldDescription& world, Diagnostics& diagnostics) {
                       fmt::format("'{}' has no effect on ideal actuators: expected 'model: "
                                   "series_elastic' beside it",
                                   key.name));
-  }
-  for (const auto& [name, mark] : world.sensors.marks) {
-    refuse(mark, fmt::format("sensor imperfections ('{}')", name));
   }
 }
 
@@ -78,6 +71,8 @@ void check_actuators(const WorldDescription& world, const model::RobotDescriptio
 WorldDescription with_draw(WorldDescription world, const model::Draw& drawn) {
   world.start = {drawn.joints, drawn.velocity, drawn.rates};
   world.friction = drawn.friction.value_or(world.friction);
+  world.noise_seed = drawn.seed;
+  world.control_model.mass_scale *= drawn.mass.value_or(1.0);
   world.control_model.mass_scales = drawn.masses;
   for (const auto& [link, shift] : drawn.com) {
     for (std::size_t k = 0; k < shift.size(); ++k) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "model/variation/variation.h"
 #include "sim/world/actuators.h"
 #include "sim/world/by_joint.h"
+#include "sim/world/sensors.h"
 
 namespace footfall::sim {
 
@@ -22,21 +24,6 @@ struct TerrainBox {
   std::array<double, 2> at{};    // m, centre in the world's x y
   std::array<double, 3> size{};  // m, full length, width, height above the plane
   core::Mark mark;
-};
-
-// Sensor imperfections; 0 is perfect. `marks` has the position of every key that was written, by
-// dotted name ("gyro.noise").
-struct SensorSettings {
-  double joint_resolution = 0.0;  // rad
-  double gyro_noise = 0.0;        // rad/s, standard deviation
-  double gyro_bias = 0.0;         // rad/s
-  double mocap_rate = 0.0;        // Hz, 0: every tick
-  double mocap_delay = 0.0;       // s
-  double mocap_noise = 0.0;       // m, standard deviation
-  double mocap_occlusion = 0.0;   // probability that a marker is hidden, 0..1
-  double switch_delay = 0.0;      // s
-  double switch_threshold = 0.0;  // N
-  std::vector<std::pair<std::string, core::Mark>> marks;
 };
 
 enum class Integrator { euler, rk4, implicit };
@@ -84,10 +71,12 @@ struct WorldDescription {
   std::string doc;
   std::string path;  // empty for the default
   double friction = 0.9;
+  double height_error = 0.0;  // m, largest: the ground's height is drawn anew for every step
   std::vector<TerrainBox> terrain;
   model::HeightSurface surface;  // nominal CoM height follows this surface
   ActuatorSettings actuators;
   SensorSettings sensors;
+  std::uint64_t noise_seed = 0;         // of the sensors' errors and of the ground's height
   model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
   std::vector<model::NamedLink> links;  // of its `com` and its constraints
   std::vector<model::BodySprings> constraints;
@@ -114,7 +103,7 @@ WorldDescription load_world(const std::string& path, core::Diagnostics& diagnost
                             const std::vector<std::string>& search = {},
                             const WorldSettings& settings = {});
 
-// The world of one run: friction, start, control model and delay as drawn.
+// The world of one run: friction, start, control model and delay as drawn, noise of the same seed.
 WorldDescription with_draw(WorldDescription world, const model::Draw& drawn);
 
 // Reports everything that a world asks for and this simulator does not support (id "unsupported"),

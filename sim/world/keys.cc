@@ -41,6 +41,10 @@ constexpr KeySpec kGroundRows[] = {
     key("friction", quantity(kNone),
         "coefficient of sliding friction; instead of one that the base draws")
         .otherwise("0.9"),
+    key("height_error", quantity(kLength),
+        "largest error of its height, terrain's too: drawn uniformly below each foot for every "
+        "step")
+        .otherwise("0 m"),
     key("terrain", list(map_of(kTerrainKeys)), "pieces on the flat ground"),
 };
 
@@ -99,30 +103,70 @@ constexpr KeySpec kActuatorsRows[] = {
 constexpr KeySpec kWorldSensorsRows[] = {
     key("joint", map_of(kJointSensorKeys), "joint encoders"),
     key("gyro", map_of(kGyroKeys), "the gyroscope"),
+    key("accelerometer", map_of(kAccelerometerKeys), "the accelerometer"),
+    key("imu", map_of(kImuSensorKeys), "gyroscope and accelerometer as one"),
     key("mocap", map_of(kMocapSensorKeys), "motion capture"),
     key("switch", map_of(kSwitchKeys), "foot switches"),
 };
 
 constexpr KeySpec kJointSensorRows[] = {
-    key("resolution", quantity(kNone, "an angle"), "resolution of the encoder").otherwise("0 rad"),
+    key("resolution", quantity(kNone, "an angle"),
+        "resolution of the encoder: positions are whole counts, velocities their change in a tick")
+        .otherwise("0 rad"),
 };
 
 constexpr KeySpec kGyroRows[] = {
-    key("noise", quantity(kRate, "an angular velocity"), "standard deviation").otherwise("0 rad/s"),
-    key("bias", quantity(kRate, "an angular velocity"), "constant offset").otherwise("0 rad/s"),
+    key("noise", quantity(kRate, "an angular velocity"),
+        "standard deviation of a tick's sample, white")
+        .otherwise("0 rad/s"),
+    key("bias", quantity(kRate, "an angular velocity"),
+        "magnitude of each axis' constant offset; a seed draws the sign")
+        .otherwise("0 rad/s"),
+    key("walk", quantity(kRate, "an angular velocity"),
+        "standard deviation of the offset's change in 1 s; grows with the root of time")
+        .otherwise("0 rad/s"),
+};
+
+constexpr KeySpec kAccelerometerRows[] = {
+    key("noise", quantity(kAcceleration), "standard deviation of a tick's sample, white")
+        .otherwise("0 m/s^2"),
+    key("bias", quantity(kAcceleration),
+        "magnitude of each axis' constant offset; a seed draws the sign")
+        .otherwise("0 m/s^2"),
+    key("walk", quantity(kAcceleration),
+        "standard deviation of the offset's change in 1 s; grows with the root of time")
+        .otherwise("0 m/s^2"),
+};
+
+constexpr KeySpec kImuSensorRows[] = {
+    key("mount", quantity(kNone, "an angle"),
+        "standard deviation of its orientation on the base about each axis; a seed draws it")
+        .otherwise("0 rad"),
 };
 
 constexpr KeySpec kMocapSensorRows[] = {
-    key("rate", quantity(kRate, "a rate in Hz"), "sample rate").otherwise("every tick"),
+    key("rate", quantity(kRate, "a rate in Hz"), "frames a second").otherwise("every tick"),
     key("delay", quantity(kTime), "time from exposure to arrival").otherwise("0 s"),
-    key("noise", quantity(kLength), "standard deviation").otherwise("0 m"),
-    key("occlusion", quantity(kNone, "a part"), "probability that a marker is hidden")
+    key("noise", quantity(kLength), "standard deviation of a marker's coordinate, white")
+        .otherwise("0 m"),
+    key("occlusion", quantity(kNone, "a part"), "part of the time in which a marker is hidden")
         .otherwise("0 %"),
+    key("spell", quantity(kTime), "mean duration of such a time").otherwise("100 ms"),
+    key("dropped", quantity(kNone, "a part"), "probability that a frame never arrives")
+        .otherwise("0 %"),
+    key("placement", quantity(kLength),
+        "standard deviation of each marker's place on the base, x, y, z; a seed draws it")
+        .otherwise("0 m"),
 };
 
 constexpr KeySpec kSwitchRows[] = {
-    key("delay", quantity(kTime), "time from contact to report").otherwise("0 s"),
-    key("threshold", quantity(kForce), "force that closes the switch").otherwise("0 N"),
+    key("delay", quantity(kTime), "time from contact to report, and from its end").otherwise("0 s"),
+    key("jitter", quantity(kTime), "added to it: uniform from 0 s, drawn for every change")
+        .otherwise("0 s"),
+    key("threshold", quantity(kForce), "normal force that closes the switch").otherwise("0 N"),
+    key("bounce", quantity(kTime),
+        "after a reported touchdown: open or closed at random in each tick")
+        .otherwise("0 s"),
 };
 
 constexpr KeySpec kControlModelRows[] = {
@@ -207,6 +251,10 @@ constinit const core::KeyTable kJointSensorKeys = {
     .id = "joint_sensor", .doc = "Joint encoders.", .keys = kJointSensorRows};
 constinit const core::KeyTable kGyroKeys = {
     .id = "gyro", .doc = "The gyroscope.", .keys = kGyroRows};
+constinit const core::KeyTable kAccelerometerKeys = {
+    .id = "accelerometer", .doc = "The accelerometer.", .keys = kAccelerometerRows};
+constinit const core::KeyTable kImuSensorKeys = {
+    .id = "imu_sensor", .doc = "Gyroscope and accelerometer as one.", .keys = kImuSensorRows};
 constinit const core::KeyTable kMocapSensorKeys = {
     .id = "mocap_sensor", .doc = "Motion capture.", .keys = kMocapSensorRows};
 constinit const core::KeyTable kSwitchKeys = {

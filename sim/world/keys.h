@@ -16,6 +16,8 @@ extern const core::KeyTable kActuatorsKeys;
 extern const core::KeyTable kWorldSensorsKeys;
 extern const core::KeyTable kJointSensorKeys;
 extern const core::KeyTable kGyroKeys;
+extern const core::KeyTable kAccelerometerKeys;
+extern const core::KeyTable kImuSensorKeys;
 extern const core::KeyTable kMocapSensorKeys;
 extern const core::KeyTable kSwitchKeys;
 extern const core::KeyTable kControlModelKeys;

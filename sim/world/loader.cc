@@ -41,7 +41,9 @@ class WorldLoader {
     if (const YamlNode* node = root.find("actuators")) {
       read_actuators(*node, world_.actuators, diagnostics_);
     }
-    if (const YamlNode* node = root.find("sensors")) read_sensors(*node);
+    if (const YamlNode* node = root.find("sensors")) {
+      read_sensors(*node, world_.sensors, diagnostics_);
+    }
     if (const YamlNode* node = root.find("control_model")) read_control_model(*node);
     if (const YamlNode* node = root.find("axis_tilts")) {
       world_.axis_tilts = {*node, diagnostics_.file(node->mark.file)};
@@ -51,6 +53,7 @@ class WorldLoader {
     if (const YamlNode* node = root.find("constraints")) read_constraints(*node);
     if (const YamlNode* node = root.find("physics")) read_physics(*node);
     if (const YamlNode* node = root.find("stand")) read_stand(*node);
+    world_.variation.noise = world_.sensors.errors.random() || world_.height_error > 0.0;
     return std::move(world_);
   }
 
@@ -77,10 +80,14 @@ class WorldLoader {
   }
 
   void read_ground(const YamlNode& node) {
-    if (!core::expect_map(node, "{friction: NUMBER, terrain: [...]}", diagnostics_)) return;
+    if (!core::expect_map(node, "{friction: NUMBER, height_error: LENGTH, terrain: [...]}",
+                          diagnostics_))
+      return;
     core::check_keys(node, kGroundKeys, diagnostics_);
     constexpr double kLargestFriction = 10.0;
     read_bounded(node, "friction", core::kNone, 0.0, kLargestFriction, world_.friction);
+    constexpr double kLargestError = 0.1;  // m
+    read_bounded(node, "height_error", core::kLength, 0.0, kLargestError, world_.height_error);
     const YamlNode* const terrain = node.find("terrain");
     if (terrain == nullptr ||
         !core::expect_sequence(*terrain, "a list of terrain pieces", diagnostics_)) {
@@ -150,49 +157,6 @@ class WorldLoader {
       }
       world_.surface.ramps.push_back(ramp);
     }
-  }
-
-  void read_sensors(const YamlNode& node) {
-    if (!core::expect_map(node, "a map of sensors", diagnostics_)) return;
-    core::check_keys(node, kWorldSensorsKeys, diagnostics_);
-    SensorSettings& sensors = world_.sensors;
-    struct Key {
-      std::string name;
-      core::Dimension dimension;
-      double maximum;
-      double* out;
-      std::string_view what = {};
-    };
-    const auto section = [&](const std::string& name, const core::KeyTable& table,
-                             const std::vector<Key>& keys) {
-      const YamlNode* const map = node.find(name);
-      if (map == nullptr) return;
-      if (!core::expect_map(*map, fmt::format("a map of the {} sensor's imperfections", name),
-                            diagnostics_)) {
-        return;
-      }
-      core::check_keys(*map, table, diagnostics_);
-      for (const Key& key : keys) {
-        read_bounded(*map, key.name, key.dimension, 0.0, key.maximum, *key.out, key.what);
-        if (const YamlNode* value = map->find(key.name)) {
-          sensors.marks.emplace_back(name + "." + key.name, value->mark);
-        }
-      }
-    };
-    constexpr double kAny = kInfinity;
-    section("joint", kJointSensorKeys,
-            {{"resolution", core::kNone, kAny, &sensors.joint_resolution, "an angle"}});
-    section("gyro", kGyroKeys,
-            {{"noise", core::kRate, kAny, &sensors.gyro_noise, "an angular velocity"},
-             {"bias", core::kRate, kAny, &sensors.gyro_bias, "an angular velocity"}});
-    section("mocap", kMocapSensorKeys,
-            {{"rate", core::kRate, kAny, &sensors.mocap_rate, "a rate in Hz"},
-             {"delay", core::kTime, kAny, &sensors.mocap_delay},
-             {"noise", core::kLength, kAny, &sensors.mocap_noise},
-             {"occlusion", core::kNone, 1.0, &sensors.mocap_occlusion}});
-    section("switch", kSwitchKeys,
-            {{"delay", core::kTime, kAny, &sensors.switch_delay},
-             {"threshold", core::kForce, kAny, &sensors.switch_threshold}});
   }
 
   void read_control_model(const YamlNode& node) {
