@@ -255,6 +255,11 @@ void ControlModel::fill_point(int index) const noexcept {
   fresh_[i] = 1;
 }
 
+std::array<double, 3> ControlModel::point_angular_velocity(int index) const noexcept {
+  const double* velocity = mj_->data->cvel + 6 * anchors_[static_cast<std::size_t>(index)].body;
+  return {velocity[0], velocity[1], velocity[2]};
+}
+
 void ControlModel::fill_frame(int index) const noexcept {
   const auto i = static_cast<std::size_t>(index);
   const mjData* d = mj_->data.get();

@@ -71,6 +71,8 @@ class ControlModel {
   const std::array<double, 3>& point_position(int index) const noexcept {
     return points_[static_cast<std::size_t>(index)].position;
   }
+  // Angular velocity of the link that a point is on, rad/s, world axes.
+  std::array<double, 3> point_angular_velocity(int index) const noexcept;
   // Orientation of the same points: of the site (or link) that the robot file names. Computed when
   // it is first asked for.
   const FrameRotation& frame(int index) const noexcept {

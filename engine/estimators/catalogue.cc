@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "engine/estimators/motion_capture.h"
 #include "engine/estimators/true_state.h"
 
 namespace footfall::engine {
@@ -10,11 +11,11 @@ namespace footfall::engine {
 std::unique_ptr<Estimator> make_estimator(const behaviors::EstimatorSpec& spec,
                                           const model::RobotDescription& robot,
                                           const model::ControlModel& model) {
-  static_cast<void>(model);
   switch (spec.type) {
     case behaviors::EstimatorType::true_state:
       return std::make_unique<TrueState>(robot);
     case behaviors::EstimatorType::motion_capture:
+      return std::make_unique<MotionCapture>(spec, robot, model);
     case behaviors::EstimatorType::contact_kalman:
       break;
   }
