@@ -29,9 +29,10 @@ std::string values_of(const behaviors::Behavior& behavior, const behaviors::Para
 ListedName row_of(const behaviors::Behavior& behavior, const behaviors::ParameterInfo& info) {
   ListedName row{info.gain ? info.name : "$" + info.name, core::unit_text(info.dimension), {}};
   row.text = fmt::format("{} {}",
-                         info.gain       ? "gain"
-                         : info.variable ? "variable"
-                                         : "parameter",
+                         info.of_estimator() ? "estimator's parameter"
+                         : info.gain         ? "gain"
+                         : info.variable     ? "variable"
+                                             : "parameter",
                          values_of(behavior, info));
   if (info.has_range()) row.text += fmt::format(", range {:g} to {:g}", info.min, info.max);
   if (info.live) row.text += ", live";

@@ -190,11 +190,7 @@ int run_behavior(RunOptions options) {
   schedule_pushes(options, backend, spec);
   schedule_push(drawn, backend, *behavior, spec);
   set_goal(options, *behavior, spec);
-  lab::RunIdentity id = {behavior->name,  behavior->robot.name,
-                         world.name,      backend.hardware->name(),
-                         options.seed,    "",
-                         backend.physics, lab::unused_torque_loops(*behavior, *backend.hardware),
-                         drawn.values,    backend.constraints};
+  lab::RunIdentity id = identity_of(options, *behavior, world, *backend.hardware, backend, drawn);
   const auto link = attach_link(options, loop, physics, spec);
   const auto folder = claim_folder(options, behavior->name);
   const auto log = open_log(options, *behavior, world, id);

@@ -136,11 +136,7 @@ int run_scenario_file(RunOptions options) {
 
   lab::RunSpec spec = make_spec(options, core::stop_on_signals());
   schedule_push(drawn, backend, behavior, spec);
-  lab::RunIdentity id = {behavior.name,   behavior.robot.name,
-                         world.name,      sensors.name(),
-                         options.seed,    "",
-                         backend.physics, lab::unused_torque_loops(behavior, sensors),
-                         drawn.values,    backend.constraints};
+  lab::RunIdentity id = identity_of(options, behavior, world, sensors, backend, drawn);
   const auto link = attach_link(options, loop, physics_world(checked.world), spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);

@@ -13,6 +13,7 @@
 
 #include "apps/run/stub_setup.h"
 #include "apps/shared/commands.h"
+#include "behaviors/language/estimators.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/realtime/allocation_count.h"
 #include "core/text/json_text.h"
@@ -167,6 +168,22 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
   backend.mujoco = mujoco.get();
   backend.hardware = std::move(mujoco);
   return backend;
+}
+
+lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavior& behavior,
+                             const sim::WorldDescription& world, const hal::Hardware& sensors,
+                             const Backend& backend, const model::Draw& drawn) {
+  return {behavior.name,
+          behavior.robot.name,
+          world.name,
+          sensors.name(),
+          options.seed,
+          "",
+          backend.physics,
+          lab::unused_torque_loops(behavior, sensors),
+          drawn.values,
+          backend.constraints,
+          std::string(behaviors::estimator_info(behavior.estimator.type).name)};
 }
 
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world) {

@@ -51,6 +51,10 @@ void schedule_push(const model::Draw& drawn, const Backend& backend,
                    const behaviors::Behavior& behavior, lab::RunSpec& spec);
 Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
                      const sim::WorldDescription& world);
+// What the summary says the run was; its log comes later.
+lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavior& behavior,
+                             const sim::WorldDescription& world, const hal::Hardware& sensors,
+                             const Backend& backend, const model::Draw& drawn);
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world);
 // Time, steps, pace, log rate, status line, counted allocations.
 lab::RunSpec make_spec(const RunOptions& options, const std::atomic<bool>* stop);

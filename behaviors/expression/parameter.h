@@ -21,13 +21,14 @@ struct ParameterInfo {
   std::string doc;
   bool bare = false;                // written without unit: adopts the required dimension
   bool variable = false;            // set by an action: reset at the start of every run, never live
-  bool gain = false;                // entry of a table of gains or of torque loops
+  bool gain = false;                // of a table of gains, of torque loops, or of the estimator
   std::vector<std::string> axes{};  // of a gain: names of the values (of a torque loop: joints)
   core::Mark mark{};                // of its name, or of its value in a gain table
 
   bool has_range() const { return min < max; }
   // Whether it is `torque_loop.TABLE.GAIN`; parameters have no dots in their names.
   bool of_torque_loop() const { return name.starts_with("torque_loop."); }
+  bool of_estimator() const { return name.starts_with("estimator."); }
 };
 
 // Component index of `x`, `y` or `z` among `size` values; -1 if invalid.

@@ -1,8 +1,15 @@
 // One row an estimator, one a parameter; see estimators.h.
 #include "behaviors/language/estimators.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "behaviors/language/language.h"
 
 namespace footfall::behaviors {
 namespace {
@@ -74,8 +81,112 @@ constexpr std::array kTypes = {
                   false, true, kContactKalman},
 };
 
+constexpr auto kEstimatorTypeRows = [] {
+  std::array<core::WordSpec, kTypes.size()> words{};
+  for (std::size_t k = 0; k < words.size(); ++k) words[k] = {kTypes[k].name, kTypes[k].doc};
+  return words;
+}();
+
+// In the order of ContactSource.
+constexpr core::WordSpec kContactSourceRows[] = {
+    {"switch", "the feet's switches"},
+    {"torque", "the joint torques of the foot's leg"},
+    {"both", "switch and torques together"},
+};
+
+std::string with_unit(double value, core::Dimension dimension) {
+  const std::string unit = core::unit_text(dimension);
+  return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+std::string joined(const std::string& before, std::string_view separator, std::string_view more) {
+  return before.empty() ? std::string(more) : fmt::format("{}{}{}", before, separator, more);
+}
+
+// The keys of `estimator:` with the texts that they point to.
+class EstimatorKeyRows {
+ public:
+  EstimatorKeyRows() {
+    std::string with_contacts;
+    for (const EstimatorInfo& type : kTypes) {
+      if (type.needs_contacts) with_contacts = joined(with_contacts, " ", type.name);
+    }
+    rows_.push_back(core::key("type", core::choice(kEstimatorTypeRows), "which estimator runs")
+                        .otherwise("true_state"));
+    rows_.push_back(core::key("contact", core::choice(kContactSourceRows),
+                              "what tells that a foot touches the ground")
+                        .otherwise("switch")
+                        .only(keep(with_contacts)));
+    for (const EstimatorInfo& type : kTypes) {
+      for (const EstimatorParameter& parameter : type.parameters) add(parameter);
+    }
+  }
+  std::span<const core::KeySpec> rows() const { return rows_; }
+
+ private:
+  std::string_view keep(std::string text) { return texts_.emplace_back(std::move(text)); }
+
+  // One row for a name, also if several types have it.
+  void add(const EstimatorParameter& parameter) {
+    for (const core::KeySpec& row : rows_) {
+      if (row.name == parameter.name) return;
+    }
+    std::string types, values, bounds;
+    bool same = true;
+    for (const EstimatorInfo& type : kTypes) {
+      const EstimatorParameter* const own = type.find(parameter.name);
+      if (own == nullptr) continue;
+      types = joined(types, " ", type.name);
+      const std::string value = with_unit(own->value, own->dimension);
+      const std::string range = fmt::format("{} to {}", with_unit(own->least, own->dimension),
+                                            with_unit(own->most, own->dimension));
+      same = same && own->value == parameter.value && own->least == parameter.least &&
+             own->most == parameter.most;
+      values = joined(values, ", ", fmt::format("{} ({})", value, type.name));
+      bounds = joined(bounds, ", ", fmt::format("{} ({})", range, type.name));
+    }
+    if (same) {
+      values = with_unit(parameter.value, parameter.dimension);
+      bounds = fmt::format("{} to {}", with_unit(parameter.least, parameter.dimension),
+                           with_unit(parameter.most, parameter.dimension));
+    }
+    rows_.push_back(core::key(parameter.name, core::quantity(parameter.dimension),
+                              keep(fmt::format("{}; {}", parameter.doc, bounds)))
+                        .otherwise(keep(values))
+                        .only(keep(types)));
+  }
+
+  std::deque<std::string> texts_;  // stable addresses
+  std::vector<core::KeySpec> rows_;
+};
+
+std::span<const core::KeySpec> estimator_key_rows() {
+  static const EstimatorKeyRows rows;
+  return rows.rows();
+}
+
 }  // namespace
 
 std::span<const EstimatorInfo> estimator_types() { return kTypes; }
+
+const EstimatorParameter* EstimatorInfo::find(std::string_view parameter) const {
+  for (const EstimatorParameter& own : parameters) {
+    if (own.name == parameter) return &own;
+  }
+  return nullptr;
+}
+
+// Not a constant of the compiler: texts of its rows are made from the table above.
+const core::KeyTable kEstimatorKeys = {
+    .id = "estimator",
+    .doc =
+        "Which estimator runs, and its parameters. All of them are live within their bounds, as "
+        "`estimator.NAME`.",
+    .keys = estimator_key_rows(),
+    .part = true,
+    .selector = "type",
+    .variants = kEstimatorTypeRows};
+constinit const std::span<const core::WordSpec> kEstimatorTypes = kEstimatorTypeRows;
+constinit const std::span<const core::WordSpec> kContactSources = kContactSourceRows;
 
 }  // namespace footfall::behaviors

@@ -23,6 +23,8 @@ struct EstimatorInfo {
   std::string_view doc;
   bool needs_imu = false, needs_mocap = false, needs_contacts = false;
   std::span<const EstimatorParameter> parameters;
+
+  const EstimatorParameter* find(std::string_view parameter) const;  // nullptr: not its own
 };
 
 // In the order of EstimatorType.

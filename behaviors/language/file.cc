@@ -26,6 +26,8 @@ constexpr KeySpec kBehaviorRows[] = {
     key("gains", map_of(kGainTablesKeys), "tables of task gains, and their ranges"),
     key("torque_loop", map_of(kTorqueLoopTablesKeys),
         "tables of the actuators' own gains, chosen in stacks and states, and their ranges"),
+    key("estimator", map_of(kEstimatorKeys),
+        "what makes the state out of the sensors, and its parameters"),
     key("planners", by_name(map_of(kPlannerKeys)), "planners that states may `invoke`"),
     key("stacks", by_name(map_of(kStackKeys)), "named sets of contacts, tasks and internal forces"),
     key("templates", by_name(map_of(kTemplateKeys)),

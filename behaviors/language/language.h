@@ -55,6 +55,11 @@ extern const std::span<const core::WordSpec> kExpressionOperators;  // by preced
 extern const std::span<const core::WordSpec> kExpressionNames;      // t, time, entry, ...
 extern const std::span<const core::WordSpec> kEventFamilies;  // raised by the engine, as patterns
 
+// estimators.cc, made from its table
+extern const core::KeyTable kEstimatorKeys;                    // selector: type
+extern const std::span<const core::WordSpec> kEstimatorTypes;  // by EstimatorType
+extern const std::span<const core::WordSpec> kContactSources;  // by ContactSource
+
 extern const core::FileTable kBehaviorFile;
 
 }  // namespace footfall::behaviors

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <span>
 
+#include "behaviors/language/language.h"
 #include "behaviors/load/context.h"
 #include "behaviors/load/steps.h"
 #include "core/diagnostics/did_you_mean.h"
@@ -114,7 +115,7 @@ void set_parameter(LoadContext& context, const std::string& name, core::YamlNode
   core::YamlNode* parameter = parameters == nullptr ? nullptr : child(*parameters, name);
   if (parameter == nullptr && parameters != nullptr) parameter = component(*parameters, name);
   if (parameter == nullptr) {
-    std::vector<std::string> known = {"gains", "planners", "torque_loop"};
+    std::vector<std::string> known = {"estimator", "gains", "planners", "torque_loop"};
     if (parameters != nullptr) known = keys_of(*parameters);
     context.error(value.mark, "unknown-parameter",
                   fmt::format("--set {}: unknown parameter '{}'{}", name, name,
@@ -213,6 +214,26 @@ void set_planner(LoadContext& context, const std::string& name, core::YamlNode v
   }
 }
 
+// `estimator.lambda`, `estimator.type`; the section is made if there is none.
+void set_estimator(LoadContext& context, const std::string& name, core::YamlNode value) {
+  const std::vector<std::string> parts = core::split_dots(name);
+  const std::vector<std::string> known = core::key_names(kEstimatorKeys);
+  if (parts.size() != 2 || core::find_key(kEstimatorKeys, parts[1]) == nullptr) {
+    context.error(value.mark, "unknown-setting",
+                  fmt::format("--set {}: expected estimator.KEY{}", name,
+                              core::did_you_mean_or_list(parts.size() < 2 ? "" : parts[1], known)));
+    return;
+  }
+  if (child(context.root, "estimator") == nullptr) {
+    core::YamlNode section;
+    section.kind = core::YamlNode::Kind::map;
+    section.mark = value.mark;
+    put_or_replace(context.root, "estimator", std::move(section));
+  }
+  if (core::YamlNode* const map = require_map(context, name, std::span(parts).first(1), value.mark))
+    put_or_replace(*map, parts[1], std::move(value));
+}
+
 void apply(LoadContext& context, const std::string& name, const std::string& text) {
   if (text.find_first_not_of(" \t") == std::string::npos) {
     context.error({}, "expected", fmt::format("--set {}: expected a value after '='", name));
@@ -225,6 +246,8 @@ void apply(LoadContext& context, const std::string& name, const std::string& tex
     set_gain(context, name, std::move(value));
   } else if (parts[0] == "torque_loop") {
     set_torque_loop(context, name, std::move(value));
+  } else if (parts[0] == "estimator") {
+    set_estimator(context, name, std::move(value));
   } else if (parts[0] == "planners") {
     set_planner(context, name, std::move(value));
   } else {

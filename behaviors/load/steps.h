@@ -21,6 +21,7 @@ core::YamlNode load_tree_text(std::string_view text, const std::string& name,
 
 void apply_overrides(LoadContext& context);      // overrides.cc
 void load_parameters(LoadContext& context);      // parameters.cc
+void load_estimator(LoadContext& context);       // estimator.cc
 void expand_machine(LoadContext& context);       // template.cc
 void check_machine_names(LoadContext& context);  // template.cc
 void warn_absences(LoadContext& context);        // unused.cc

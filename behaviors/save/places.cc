@@ -60,6 +60,18 @@ ValueHome home_of_torque_loop(const SaveSource& source, const ParameterInfo& inf
   return home;
 }
 
+// A parameter that the file does not name has its section as home, as a new key of a map has.
+ValueHome home_of_estimator(const SaveSource& source, const ParameterInfo& info) {
+  ValueHome home;
+  home.path = core::split_dots(info.name);
+  home.node = node_at(source.context.root, home.path);
+  if (home.node != nullptr) return home;
+  home.axes = {home.path.back()};
+  home.path.pop_back();
+  home.node = node_at(source.context.root, home.path);
+  return home;
+}
+
 // The values of a map by name: the entry that applies to each, nullptr if none.
 std::vector<const core::YamlEntry*> entries_of(const ValueHome& home) {
   core::Diagnostics ignored;  // the file was loaded without error before
@@ -144,6 +156,7 @@ std::vector<KeyPath> paths_of(const core::YamlNode& root, const core::YamlNode& 
 ValueHome find_home(const SaveSource& source, const ParameterInfo& info) {
   if (!info.gain) return home_of_parameter(source, info.name);
   if (info.of_torque_loop()) return home_of_torque_loop(source, info);
+  if (info.of_estimator()) return home_of_estimator(source, info);
   ValueHome home;
   const std::size_t dot = info.name.rfind('.');
   const auto found = source.context.gain_entries.find(info.name.substr(0, dot));

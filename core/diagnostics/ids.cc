@@ -72,6 +72,7 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"missing-blank", kError, "no blank after a `:`"},
     {"missing-key", kError, "a required key is missing"},
     {"missing-key-name", kError, "a value without a key"},
+    {"missing-sensor", kError, "an estimator that needs a sensor which the robot does not have"},
     {"model", kError, "the robot's model file is missing or does not match the robot file"},
     {"name", kError, "an invalid name"},
     {"near-step", kWarning, "a mark similar to `step` in a behavior without `mark: step`"},

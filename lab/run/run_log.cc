@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "behaviors/language/estimators.h"
 #include "core/index.h"
 #include "core/text/json_text.h"
 #include "core/text/printable.h"
@@ -215,6 +216,7 @@ engine::LogHeader make_log_header(const behaviors::Behavior& behavior, const Log
                 {"robot_file", behavior.robot.path},
                 {"world", source.world},
                 {"backend", source.backend},
+                {"estimator", std::string(behaviors::estimator_info(behavior.estimator.type).name)},
                 {"seed", std::to_string(source.settings.seed)},
                 {"version", kVersion},
                 {"format", std::to_string(kLogFormat)},

@@ -263,6 +263,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["world"] = id.world;
   out["backend"] = id.backend;
   out["seed"] = id.seed;
+  out["estimator"] = id.estimator;
   out["end"] = run_end_name(result.end);
   out["fell"] = f.fell;
   out.update(figures_json(f));
@@ -350,6 +351,7 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   if (!id.constraints.empty()) {
     text += fmt::format("  AIDED        by {}\n", fmt::join(id.constraints, ", "));
   }
+  text += fmt::format("  estimator    {}\n", id.estimator);
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
   return text;
 }

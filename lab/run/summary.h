@@ -34,6 +34,7 @@ struct RunIdentity {
   std::vector<std::pair<std::string, std::vector<double>>> variation{};
   // External aids: names of the world's constraints, and `hold of BODY` of a scenario.
   std::vector<std::string> constraints{};
+  std::string estimator = "true_state";  // by the name of its type
 };
 // {NAME: number or list}
 nlohmann::ordered_json variation_json(const RunIdentity& id);

@@ -45,7 +45,7 @@ constexpr KeySpec kSweepRows[] = {
     key("for", quantity(kTime), "duration of a run").otherwise("the scenario's, or 20 s"),
     key("vary", by_name(list(anything())), by_name(map_of(kSweepGridKeys)),
         "values by name, all combinations: parameters, `gains.TABLE.TASK.kp`, "
-        "`torque_loop.TABLE.p`, `planners.NAME.KEY`, "
+        "`torque_loop.TABLE.p`, `estimator.NAME`, `planners.NAME.KEY`, "
         "`script.N.KEY` (the scenario's N-th entry), `world.KEY`, `variation.KEY` (the "
         "scenario's)"),
     key("zip", by_name(list(anything())), "lists of equal length, combined element by element"),

@@ -1,10 +1,12 @@
 // Each key of the language is one that the loader reads: a file that uses all of them loads, and
 // with any of its values broken it does not.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
+#include "behaviors/language/estimators.h"
 #include "behaviors/language/language.h"
 #include "behaviors/loader.h"
 #include "tests/language/keys/key_uses.h"
@@ -37,8 +39,9 @@ TEST(EveryKey, OfTheLanguageIsInAFileThatLoads) {
   core::Diagnostics diagnostics;
   const core::YamlNode root = core::load_yaml_text(kEveryKey, "b.yaml", diagnostics);
   // A base is another file (tests/unit/core/yaml).
-  EXPECT_EQ(unused_keys(kBehaviorFile, key_uses(kBehaviorFile, root)),
-            std::vector<std::string>{"behavior.base"});
+  auto unused = unused_keys(kBehaviorFile, key_uses(kBehaviorFile, root));
+  std::erase_if(unused, [](const std::string& key) { return key.starts_with("estimator."); });
+  EXPECT_EQ(unused, std::vector<std::string>{"behavior.base"});
 }
 TEST(EveryKey, OfTheLanguageIsReadSoThatAWrongValueIsRefused) {
   core::Diagnostics diagnostics;
@@ -52,6 +55,25 @@ TEST(EveryKey, OfTheLanguageIsReadSoThatAWrongValueIsRefused) {
     ++count;
   }
   EXPECT_GT(count, 90);
+}
+
+// Keys of one type exclude those of another.
+TEST(EveryKey, OfEachEstimatorIsReadSoThatAWrongValueIsRefused) {
+  for (const behaviors::EstimatorInfo& type : behaviors::estimator_types()) {
+    std::string text = fmt::format("behavior: 1\nrobot: hume\nestimator: {{type: {}", type.name);
+    if (type.needs_contacts) text += ", contact: both";
+    for (const auto& parameter : type.parameters) {
+      text += fmt::format(", {}: {}", parameter.name, parameter.value);
+    }
+    text += "}\nmachine: {}\n";
+    EXPECT_EQ(said_of(text).find("error:"), std::string::npos) << said_of(text);
+    core::Diagnostics diagnostics;
+    const core::YamlNode root = core::load_yaml_text(text, "b.yaml", diagnostics);
+    for (const core::YamlEntry& entry : root.find("estimator")->entries) {
+      EXPECT_NE(said_of(broken(text, entry.value)).find("error:"), std::string::npos)
+          << type.name << ", " << entry.key;
+    }
+  }
 }
 
 }  // namespace
