@@ -67,7 +67,11 @@ Mocap::Points Mocap::places(const BaseMotion& motion) const noexcept {
 void Mocap::start(const BaseMotion& motion) noexcept {
   before_ = places(motion);
   oldest_ = waiting_ = 0;
-  tick_ = exposed_ = 0;
+  tick_ = 0;
+  // The cameras have run before: frames of the place where the body starts are on their way, and
+  // the newest of those that are due is there at once, also if a few in a row were lost.
+  constexpr double kSpare = 8.0;
+  exposed_ = -static_cast<std::int64_t>(std::ceil(errors_.delay / interval_) + kSpare);
   for (std::size_t m = 0; m < markers_; ++m) hidden_[m] = occlusion_.uniform() < errors_.occlusion;
 }
 
