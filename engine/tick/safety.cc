@@ -42,7 +42,10 @@ FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, const TickS
   check_swings(tick, findings);
   if (sensors.backend_fault) findings.add(Fault::simulator_warning);
   if (!sensors.imu_fresh) findings.add(Fault::imu_stale);
-  if (!sensors.mocap_fresh) findings.add(Fault::mocap_stale);
+  blind_ticks_ = sensors.mocap_fresh ? 0 : blind_ticks_ + 1;
+  if (static_cast<double>(blind_ticks_) * robot_.period_s() > robot_.sensors.mocap_stale_after) {
+    findings.add(Fault::mocap_stale);
+  }
   const model::State& state = model.state();
   bool finite = true;
   for (int j = 0; j < model.joint_count(); ++j) {

@@ -26,7 +26,8 @@ class SafetyFilter {
 
   // Before control: fall (height of the base above the lowest contact point below its part of the
   // standing height, tilt beyond the limit, another body touching), joint limits, swings,
-  // sensors, estimator and backend. Once a tick: it counts how long each foot is in the air.
+  // sensors, estimator and backend. Once a tick: it counts how long each foot is in the air, and
+  // how long motion capture has been silent.
   FaultFindings check_state(const hal::Sensors& sensors, const TickStart& tick,
                             const model::ControlModel& model) noexcept;
 
@@ -39,6 +40,7 @@ class SafetyFilter {
   // Goes on from the commands that another filter of the same robot let pass.
   void take_over(const SafetyFilter& old) noexcept {
     air_ticks_ = old.air_ticks_;
+    blind_ticks_ = old.blind_ticks_;
     previous_ = old.previous_;
     have_previous_ = old.have_previous_;
     torque_step_ = old.torque_step_;
@@ -54,6 +56,7 @@ class SafetyFilter {
 
   const model::RobotDescription& robot_;
   std::array<std::int64_t, core::kMaxContacts> air_ticks_{};  // of each foot, since its lift-off
+  std::int64_t blind_ticks_ = 0;                              // since motion capture's last frame
   std::array<double, core::kMaxJoints> previous_{};
   bool have_previous_ = false;
   double torque_step_ = 0.0;

@@ -70,7 +70,8 @@ struct JointGroup {
 struct SensorDescription {
   std::string imu_site;
   std::vector<std::string> mocap_sites;
-  std::vector<int> switches;  // contact indices
+  double mocap_stale_after = 0.0;  // s without a frame
+  std::vector<int> switches;       // contact indices
 };
 
 struct RobotDescription {

@@ -112,6 +112,10 @@ constexpr KeySpec kImuRows[] = {
 
 constexpr KeySpec kMocapRows[] = {
     key("sites", one_or_list(text_of("a site's name")), "the markers, with globs").required(),
+    key("stale_after", quantity(kTime),
+        "time without a frame after which motion capture's data are old: longer than between two "
+        "frames, with a few of them lost")
+        .otherwise("every tick has a frame"),
 };
 
 constexpr KeySpec kSymmetryRows[] = {

@@ -270,6 +270,11 @@ class RobotLoader {
           robot_.sensors.mocap_sites = core::read_texts(*sites, diagnostics_, "a site's name")
                                            .value_or(std::vector<std::string>());
         }
+        if (const YamlNode* time = mocap->find("stale_after")) {
+          constexpr double kMost = 10.0;  // s
+          robot_.sensors.mocap_stale_after =
+              core::read_bounded(*time, core::kTime, 0.0, kMost, diagnostics_).value_or(0.0);
+        }
       }
     }
     if (const YamlNode* switches = node.find("switches")) {

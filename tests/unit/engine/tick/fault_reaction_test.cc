@@ -33,6 +33,7 @@ constexpr std::int64_t kCause = 40;  // the tick in which something goes wrong
 constexpr int kLate = 3;             // limits.overruns of the robot
 // limits.swing, ms at 1500 Hz, half of which passes between the ticks kCause and kCause + 1.
 constexpr double kLoadedSwing = (2 * kCause + 1) / 1.5;
+constexpr int kBlind = 30;  // ticks of hume's stale_after
 constexpr int kSwing = 15;  // ticks of its limits.swing where that is tried
 
 // Level 1 has rank 3 in the nominal posture; with straight legs its height cannot be moved.
@@ -137,7 +138,7 @@ Provocation provocation(Fault fault) {
     case Fault::imu_stale:
       return {.spoil = [](hal::Sensors& s) { s.imu_fresh = false; }};
     case Fault::mocap_stale:
-      return {.spoil = [](hal::Sensors& s) { s.mocap_fresh = false; }};
+      return {.spoil = [](hal::Sensors& s) { s.mocap_fresh = false; }, .delay = kBlind};
     case Fault::tick_overrun:
       return {.act = [](engine::ControlLoop& loop, Meddler&) { loop.late(true); },
               .ticks = kLate,
