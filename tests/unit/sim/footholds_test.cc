@@ -31,6 +31,7 @@ class FootholdsTest : public testing::Test {
     mjData* d = backend->data();
     d->qpos[0] = x;
     d->qpos[2] = standing + height;
+    for (int k = 3; k < 7; ++k) d->qpos[k] = k == 3 ? 1.0 : 0.0;
     for (int k = 0; k < backend->model()->nv; ++k) d->qvel[k] = 0.0;
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       const int joint = mj_name2id(backend->model(), mjOBJ_JOINT, robot.joints[j].name.c_str());
