@@ -51,11 +51,16 @@ bool MujocoBackend::read(hal::Sensors& s) noexcept {
   return true;
 }
 
-// Joints as the simulation has them, links that bend included.
+// Joints as the simulation has them, links that bend included. MuJoCo normalizes the base's
+// quaternion where it updates positions; once more would change its last bits, and with them the
+// run.
 void MujocoBackend::find_truth(const hal::Sensors& s) noexcept {
   std::copy_n(s.q.begin(), qpos_.size(), truth_.q.begin());
   std::copy_n(s.qd.begin(), qpos_.size(), truth_.qd.begin());
+  std::array<double, 4> orientation{};
+  std::copy_n(data_->qpos + 3, 4, orientation.begin());
   update_positions();
+  std::ranges::copy(orientation, data_->qpos + 3);
   mj_subtreeVel(model_, data_);
   std::copy_n(data_->subtree_com + 3 * base_body_, 3, truth_.com.begin());
   std::copy_n(data_->subtree_linvel + 3 * base_body_, 3, truth_.com_velocity.begin());

@@ -20,9 +20,7 @@ SensorPlaces places_of(const StubSettings& settings) {
 
 }  // namespace
 
-StubBackend::StubBackend(StubSettings settings)
-    : settings_(std::move(settings)),
-      sensors_(settings_.sensors, places_of(settings_), settings_.period, settings_.noise_seed) {
+StubBackend::StubBackend(StubSettings settings) : settings_(std::move(settings)) {
   if (settings_.joints < 0 || settings_.joints > core::kMaxJoints || settings_.contacts < 0 ||
       settings_.contacts > core::kMaxContacts) {
     throw std::runtime_error("stub backend: too many joints or contacts");
@@ -34,6 +32,7 @@ StubBackend::StubBackend(StubSettings settings)
       settings_.damping < 0.0) {
     throw std::runtime_error("stub backend: steps, delay, stiffness or damping are negative");
   }
+  sensors_.emplace(settings_.sensors, places_of(settings_), settings_.period, settings_.noise_seed);
   settings_.start.resize(static_cast<std::size_t>(settings_.joints), 0.0);
   if (settings_.drive) drive_.emplace(*settings_.drive);
   if (settings_.stiffness > 0.0) {
@@ -73,7 +72,7 @@ void StubBackend::start() {
   if (drive_) drive_->start(q_, tau_);
   delayed_.assign(static_cast<std::size_t>(settings_.command_delay) + 1, tau_);
   released_.fill(-1);
-  sensors_.start({.p_WB = settings_.base});
+  sensors_->start({.p_WB = settings_.base});
   tick_ = 0;
   stopped_ = false;
 }
@@ -96,7 +95,7 @@ bool StubBackend::read(Sensors& sensors) noexcept {
   sensors.q_WB = {1.0, 0.0, 0.0, 0.0};
   sensors.v_WB = {};
   sensors.w_WB_B = {};
-  sensors_.sample(truth_, sensors);
+  sensors_->sample(truth_, sensors);
   return true;
 }
 

@@ -61,7 +61,7 @@ class StubBackend final : public Hardware {
   std::vector<double> q_, qd_, tau_;
   std::vector<SeriesElasticActuator> stand_;  // joints on its springs; empty: it has none
   std::optional<SeriesElasticDrive> drive_;
-  SensorSuite sensors_;
+  std::optional<SensorSuite> sensors_;
   SensorTruth truth_;
   std::vector<std::vector<double>> delayed_;  // commands on their way to ideal actuators
   std::array<std::int64_t, core::kMaxContacts> released_{};  // by contact: the tick; -1: it is held

@@ -16,7 +16,7 @@ struct InertialErrors {
 };
 
 struct ImuErrors {
-  InertialErrors gyro, accelerometer;
+  InertialErrors gyro{}, accelerometer{};
   double mount = 0.0;  // rad, standard deviation of its orientation error about each axis
   bool any() const noexcept { return gyro.any() || accelerometer.any() || mount > 0.0; }
 };

@@ -56,7 +56,7 @@ double Mocap::exposure(std::int64_t frame) const noexcept {
 
 Mocap::Points Mocap::places(const BaseMotion& motion) const noexcept {
   const Matrix3 r = matrix_of(motion.q_WB);
-  Points points{};
+  Points points;  // those of no marker are never read
   for (std::size_t m = 0; m < markers_; ++m) {
     points[m] = turned(r, p_BM_[m]);
     for (std::size_t k = 0; k < 3; ++k) points[m][k] += motion.p_WB[k];
@@ -98,7 +98,7 @@ void Mocap::expose(const Points& now, double fraction) noexcept {
       double& x = frame.points[m][k];
       x = fraction < 1.0 ? before_[m][k] + fraction * (now[m][k] - before_[m][k]) : now[m][k];
       if (errors_.noise > 0.0) x += errors_.noise * noise_.normal();
-      if (any_) x = digital(x);
+      x = digital(x);
     }
   }
   if (!lost) ++waiting_;
@@ -113,7 +113,23 @@ void Mocap::arrive(const Frame& frame, double age, Sensors& sensors) const noexc
   }
 }
 
+// A perfect one: what the frames below would show.
+void Mocap::show(const BaseMotion& motion, Sensors& sensors) const noexcept {
+  const Matrix3 r = matrix_of(motion.q_WB);
+  for (std::size_t m = 0; m < markers_; ++m) {
+    sensors.marker[m] = turned(r, p_BM_[m]);
+    for (std::size_t k = 0; k < 3; ++k) sensors.marker[m][k] += motion.p_WB[k];
+    sensors.marker_seen[m] = true;
+  }
+  sensors.mocap_fresh = true;
+  sensors.mocap_age = 0.0;
+}
+
 void Mocap::sample(const BaseMotion& motion, Sensors& sensors) noexcept {
+  if (!any_) {
+    show(motion, sensors);
+    return;
+  }
   const Points now = places(motion);
   const double time = static_cast<double>(tick_) * period_;
   const double late = kRounding * period_;
@@ -133,7 +149,7 @@ void Mocap::sample(const BaseMotion& motion, Sensors& sensors) noexcept {
     expose(now, std::clamp(1.0 - (time - exposure(exposed_)) / period_, 0.0, 1.0));
   }
   take();
-  before_ = now;
+  std::copy_n(now.begin(), markers_, before_.begin());
   ++tick_;
 }
 

@@ -35,6 +35,7 @@ class Mocap {
     Points points{};          // m, world
     std::array<bool, core::kMaxMarkers> seen{};
   };
+  void show(const BaseMotion& motion, Sensors& sensors) const noexcept;
   double exposure(std::int64_t frame) const noexcept;
   Points places(const BaseMotion& motion) const noexcept;
   void expose(const Points& now, double fraction) noexcept;

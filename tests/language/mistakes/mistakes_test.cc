@@ -83,7 +83,10 @@ void load(const std::string& path, const std::string& text,
     const auto world = sim::load_world(path, diagnostics);
     if (diagnostics.has_errors()) return;
     sim::check_supported(world, diagnostics);
-    sim::check_actuators(world.actuators, load_hume(), world.physics.steps_per_tick, diagnostics);
+    model::RobotDescription robot = load_hume();
+    sim::check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
+    robot.sensors.imu_site.clear();  // the only robot of these cases that lacks one
+    sim::check_sensors(world.sensors, robot, diagnostics);
   } else if (text.starts_with("scenario: 1\n")) {
     load_scenario(path, diagnostics);
   } else {

@@ -67,6 +67,56 @@ TEST(Variation, ANormalDrawIsCutAtThreeDeviations) {
   EXPECT_GT(most, 0.055);
 }
 
+// One factor for all links; a sign has the mean 0 and the deviation 1.
+TEST(Variation, ASignOfTheMassIsOneForAllLinks) {
+  const Variation v = read("control_model: {mass: {sign: 5 %}}");
+  EXPECT_TRUE(v.depends_on_seed());
+  int more = 0;
+  constexpr int kSeeds = 2'000;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Draw drawn = draw(v, 0, kLinks, seed);
+    EXPECT_TRUE(drawn.masses.empty());
+    ASSERT_NEAR(std::abs(drawn.mass.value() - 1.0), 0.05, 1e-15);
+    more += *drawn.mass > 1.0 ? 1 : 0;
+    ASSERT_EQ(drawn.values.front().first, "control_model.mass");
+    EXPECT_EQ(drawn.values.front().second, std::vector<double>{*drawn.mass});
+  }
+  EXPECT_NEAR(more, kSeeds / 2, 5.0 * std::sqrt(0.25 * kSeeds));
+}
+
+// Uniform directions: cosine and sine have the mean 0, the variance 1/2, and do not correlate.
+TEST(Variation, ARingIsAsFarInAnyDirection) {
+  const Variation v = read("control_model: {com: {torso: {ring: 1 cm}}}");
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  constexpr double kSeeds = 2'000;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const auto shift = draw(v, 0, kLinks, seed).com.at("torso");
+    ASSERT_NEAR(std::hypot(shift[0], shift[1]), 0.01, 1e-15);
+    x += shift[0] / 0.01;
+    y += shift[1] / 0.01;
+    xx += shift[0] * shift[0] / 1e-4;
+    xy += shift[0] * shift[1] / 1e-4;
+  }
+  const double bound = 5.0 * std::sqrt(0.5 * kSeeds);
+  EXPECT_NEAR(x, 0.0, bound);
+  EXPECT_NEAR(y, 0.0, bound);
+  EXPECT_NEAR(xx, 0.5 * kSeeds, bound);  // deviations of sqrt(1/8)
+  EXPECT_NEAR(xy, 0.0, bound);
+}
+
+TEST(Variation, OneDistributionReplacesTheOther) {
+  const Variation v =
+      read("control_model: {mass: {sd: 1 %}}", read("control_model: {mass: {sign: 5 %}}"));
+  EXPECT_EQ(v.mass.kind, model::Spread::Kind::normal);
+  EXPECT_FALSE(draw(v, 0, kLinks, 1).mass);
+}
+
+TEST(Variation, ASignOrRingBeyondWhatCanBeDrawnIsRefused) {
+  EXPECT_NE(problems("control_model: {mass: {sign: 95 %}}").find("0.9"), std::string::npos);
+  EXPECT_NE(problems("command_delay: {sign: 1 ms}").find("below zero"), std::string::npos);
+  EXPECT_NE(problems("control_model: {com: {torso: {ring: -1 cm}}}").find("0"), std::string::npos);
+}
+
 TEST(Variation, AUniformDrawFillsItsRange) {
   const Variation v = read("friction: {range: [0.6, 1]}");
   double least = 2.0, most = 0.0;

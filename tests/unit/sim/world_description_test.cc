@@ -77,11 +77,11 @@ TEST_F(WorldDescriptionTest, AWholeFileIsRead) {
   EXPECT_EQ(world.actuators.model, ActuatorModel::series_elastic);
   EXPECT_DOUBLE_EQ(world.actuators.command_delay, 667e-6);
   EXPECT_EQ(world.actuators.coulomb, 1.0);
-  EXPECT_EQ(world.sensors.joint_resolution, 3.8e-4);
-  EXPECT_DOUBLE_EQ(world.sensors.gyro_bias, 0.25 * kDegree);
-  EXPECT_EQ(world.sensors.mocap_rate, 480);
-  EXPECT_DOUBLE_EQ(world.sensors.mocap_occlusion, 0.05);
-  EXPECT_EQ(world.sensors.switch_threshold, 20);
+  EXPECT_EQ(world.sensors.errors.joint_resolution, 3.8e-4);
+  EXPECT_DOUBLE_EQ(world.sensors.errors.imu.gyro.bias, 0.25 * kDegree);
+  EXPECT_EQ(world.sensors.errors.mocap.rate, 480);
+  EXPECT_DOUBLE_EQ(world.sensors.errors.mocap.occlusion, 0.05);
+  EXPECT_EQ(world.sensors.errors.switches.threshold, 20);
   EXPECT_DOUBLE_EQ(world.control_model.mass_scale, 1.05);
   EXPECT_EQ(world.control_model.com_shift.at("torso"), (std::array<double, 3>{0.01, 0, 0}));
   EXPECT_EQ(world.constraints[0].name, "planarizer");
@@ -111,21 +111,9 @@ TEST_F(WorldDescriptionTest, TheDefaultIsFlatAndIdeal) {
   EXPECT_EQ(diagnostics_.to_string(), "");
 }
 
-TEST_F(WorldDescriptionTest, WhatTheSimulatorCannotDoIsRefusedAtItsPlace) {
-  const WorldDescription world = load(kWorld);
-  check_supported(world, diagnostics_);
-  EXPECT_EQ(
-      problems(),
-      "8:23: error: the simulator does not support sensor imperfections ('joint.resolution') yet\n"
-      "9:17: error: the simulator does not support sensor imperfections ('gyro.noise') yet\n"
-      "9:35: error: the simulator does not support sensor imperfections ('gyro.bias') yet\n"
-      "10:17: error: the simulator does not support sensor imperfections ('mocap.rate') yet\n"
-      "10:32: error: the simulator does not support sensor imperfections ('mocap.delay') yet\n"
-      "10:45: error: the simulator does not support sensor imperfections ('mocap.noise') yet\n"
-      "10:62: error: the simulator does not support sensor imperfections ('mocap.occlusion') yet\n"
-      "11:19: error: the simulator does not support sensor imperfections ('switch.delay') yet\n"
-      "11:36: error: the simulator does not support sensor imperfections ('switch.threshold') "
-      "yet\n");
+TEST_F(WorldDescriptionTest, EverythingOfItIsSimulated) {
+  check_supported(load(kWorld), diagnostics_);
+  EXPECT_EQ(problems(), "");
 }
 
 TEST_F(WorldDescriptionTest, ADelayAndAWrongControlModelAreSupported) {

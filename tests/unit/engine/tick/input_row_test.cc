@@ -27,6 +27,62 @@ TEST(InputLayout, ColumnsKeepTheirNamesAndOrder) {
   EXPECT_EQ(layout.names(), names);
 }
 
+// What only estimators need stands behind the rest.
+TEST(InputLayout, MarkersAndTruthsHaveColumnsWhereTheStateIsEstimated) {
+  const InputLayout without({{"hip"}, {"foot"}});
+  const InputLayout layout(
+      {.joints = {"hip"}, .contacts = {"foot"}, .markers = {"a", "b"}, .estimation = true});
+  const std::vector<std::string> more = {"marker.a.x",
+                                         "marker.a.y",
+                                         "marker.a.z",
+                                         "marker.b.x",
+                                         "marker.b.y",
+                                         "marker.b.z",
+                                         "mocap_age",
+                                         "true_qd.hip",
+                                         "true_q.hip",
+                                         "true_com_velocity.x",
+                                         "true_com_velocity.y",
+                                         "true_com_velocity.z",
+                                         "true_com.x",
+                                         "true_com.y",
+                                         "true_com.z",
+                                         "true_gyro_bias.x",
+                                         "true_gyro_bias.y",
+                                         "true_gyro_bias.z",
+                                         "true_accelerometer_bias.x",
+                                         "true_accelerometer_bias.y",
+                                         "true_accelerometer_bias.z"};
+  std::vector<std::string> names = without.names();
+  names.insert(names.end(), more.begin(), more.end());
+  EXPECT_EQ(layout.names(), names);
+}
+
+// Distinct values return through a row, those of a hidden marker too.
+TEST(InputLayout, AFrameOfMotionCaptureReturnsBitForBit) {
+  const InputLayout layout(
+      {.joints = {"hip"}, .contacts = {"foot"}, .markers = {"a", "b"}, .estimation = true});
+  hal::Sensors sensors, back;
+  sensors.marker[0] = {0.1, 0.2, 0.3};
+  sensors.marker[1] = {0.4, 0.5, 0.6};
+  sensors.marker_seen[1] = true;
+  sensors.mocap_age = 0.005;
+  sensors.sensor_truth = true;
+  sensors.true_q[0] = 0.7;
+  sensors.true_accelerometer_bias = {0.8, 0.9, 1.0};
+  std::vector<std::uint64_t> row(static_cast<std::size_t>(layout.columns()));
+  hal::Commands commands;
+  layout.pack(sensors, true, commands, row.data());
+  EXPECT_EQ(row[2] & (std::uint64_t{3} << 40U), std::uint64_t{2} << 40U);  // flags
+  layout.unpack(row.data(), back, commands);
+  EXPECT_EQ(back.marker, sensors.marker);
+  EXPECT_EQ(back.marker_seen, sensors.marker_seen);
+  EXPECT_EQ(back.mocap_age, sensors.mocap_age);
+  EXPECT_TRUE(back.sensor_truth);
+  EXPECT_EQ(back.true_q, sensors.true_q);
+  EXPECT_EQ(back.true_accelerometer_bias, sensors.true_accelerometer_bias);
+}
+
 TEST(InputLayout, PositionsAreTheIntegralsOfTheirVelocities) {
   const InputLayout layout({{"hip", "knee"}, {"foot"}});
   const std::vector<std::pair<int, int>> pairs = {{4, 6}, {5, 7}, {19, 22}, {20, 23}, {21, 24}};
@@ -107,7 +163,7 @@ TEST(InputLayout, TheDocumentOfTheLogHasEveryColumnAndFlag) {
   hal::for_each_field(hal::kSensorFields, add);
   std::string flags = "| 1 | something new arrived |\n";
   hal::for_each_field(hal::kFlagFields, [&]<typename Value>(const hal::FlagField<Value>& f) {
-    std::string each;
+    const char* each = "";
     if constexpr (!std::is_same_v<Value, bool>) {
       each = std::tuple_size_v<Value> == core::kMaxMarkers ? " << m" : " << c";
     }
