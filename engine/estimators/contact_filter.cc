@@ -53,10 +53,13 @@ void ContactFilter::update(const EstimatorInput& input, const ContactSettings& s
                          : source_ == ContactSource::torque
                              ? memory_.pressed[c]
                              : memory_.switched[c] || memory_.pressed[c];
-    memory_.touching[c] = memory_.contact[c] ? memory_.touching[c] + period_ : 0.0;
+    // A foot that touches at the start has done so before.
+    const double before = memory_.started ? memory_.touching[c] : 1e9;
+    memory_.touching[c] = memory_.contact[c] ? before + period_ : 0.0;
     const bool relied = ((input.support >> static_cast<unsigned>(i)) & 1U) != 0;
     memory_.unsupported[c] = relied ? 0.0 : memory_.unsupported[c] + period_;
   }
+  memory_.started = true;
 }
 
 bool ContactFilter::anchor(int c) const noexcept {

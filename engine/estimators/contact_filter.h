@@ -46,6 +46,7 @@ class ContactFilter {
   std::vector<std::vector<int>> legs_;  // joints by contact
   ContactSettings settings_;
   struct Memory {
+    bool started = false;
     Contacts contact{}, switched{}, pressed{};
     std::array<double, core::kMaxContacts> open{};         // s that the switch has been open
     std::array<double, core::kMaxContacts> touching{};     // s since touchdown
