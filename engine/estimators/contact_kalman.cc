@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core/index.h"
-#include "engine/estimators/invariant_filter.h"
+#include "engine/estimators/parts/invariant_filter.h"
 
 namespace footfall::engine {
 namespace {

@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "engine/estimators/rotation.h"
+#include "engine/estimators/parts/rotation.h"
 
 namespace footfall::engine {
 

@@ -1,5 +1,5 @@
 // Propagation and corrections; see invariant_filter.h.
-#include "engine/estimators/invariant_filter.h"
+#include "engine/estimators/parts/invariant_filter.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
