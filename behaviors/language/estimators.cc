@@ -72,7 +72,33 @@ constexpr auto kMotionCapture = measured_and(std::array{
         "integral of the velocity's corrections: takes out the accelerometer's error; "
         "0: none"},
 });
-constexpr auto kContactKalman = measured_and(std::array<EstimatorParameter, 0>{});
+constexpr double kDegree = 0.017453292519943295;
+constexpr auto kContactKalman = measured_and(std::array{
+    EstimatorParameter{"gyro_noise", kRate, 0.01, 1e-6, 10.0, "white noise of a sample of a tick"},
+    EstimatorParameter{"accelerometer_noise", kAcceleration, 0.08, 1e-5, 100.0,
+                       "white noise of a sample of a tick, with what shakes the base in between"},
+    EstimatorParameter{"gyro_bias_walk", kRate, 2e-5, 0.0, 1.0,
+                       "what the gyro's bias wanders in 1 s"},
+    EstimatorParameter{"accelerometer_bias_walk", kAcceleration, 1e-4, 0.0, 10.0,
+                       "what the accelerometer's bias wanders in 1 s"},
+    EstimatorParameter{"foot_noise", kLength, 0.3e-3, 1e-6, 1.0, "of a foot's place by the joints"},
+    EstimatorParameter{"foot_slip", kLength, 1e-3, 0.0, 10.0,
+                       "what a foot on the ground wanders in 1 s"},
+    EstimatorParameter{"slip_gate", kNone, 6.0, 0.0, 100.0,
+                       "a foot farther off than this many standard deviations has slipped and is "
+                       "taken from where it is; 0: none has"},
+    EstimatorParameter{"ground_noise", kLength, 0.0, 0.0, 1.0,
+                       "a foot that lands is at height 0 with this standard deviation; 0: the "
+                       "ground's height is unknown"},
+    EstimatorParameter{"start_attitude", kNone, 0.05, 1e-6, 1.0,
+                       "standard deviation at the start, rad, of roll and pitch"},
+    EstimatorParameter{"start_velocity", kVelocity, 0.05, 1e-6, 10.0,
+                       "standard deviation at the start"},
+    EstimatorParameter{"start_gyro_bias", kRate, 0.5 * kDegree, 0.0, 1.0,
+                       "standard deviation at the start"},
+    EstimatorParameter{"start_accelerometer_bias", kAcceleration, 0.03, 0.0, 10.0,
+                       "standard deviation at the start"},
+});
 constexpr std::array kTypes = {
     EstimatorInfo{"true_state", "the simulator's own state", false, false, false, {}},
     EstimatorInfo{"motion_capture", "IMU, motion capture and leg kinematics", true, true, true,

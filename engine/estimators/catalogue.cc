@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "engine/estimators/contact_kalman.h"
 #include "engine/estimators/motion_capture.h"
 #include "engine/estimators/true_state.h"
 
@@ -17,7 +18,7 @@ std::unique_ptr<Estimator> make_estimator(const behaviors::EstimatorSpec& spec,
     case behaviors::EstimatorType::motion_capture:
       return std::make_unique<MotionCapture>(spec, robot, model);
     case behaviors::EstimatorType::contact_kalman:
-      break;
+      return make_contact_kalman(spec, robot, model);
   }
   throw std::runtime_error("this estimator does not exist yet");
 }

@@ -48,12 +48,22 @@ struct Estimate {
   EstimateQuality quality;
 };
 
+// Covariance of the estimate's error (estimate less truth), row-major: attitude (rotation vector
+// from the true to the estimated base, rad, world axes), velocity and position of the base's origin
+// (m/s and m, world axes).
+using ErrorCovariance = std::array<double, 81>;
+
 class Estimator {
  public:
   virtual ~Estimator() = default;
   // Once per tick; allocates nothing. False: the sensors cannot give a state (no truth, stale
   // data); `estimate` is then unchanged.
   virtual bool estimate(const EstimatorInput& input, Estimate& estimate) noexcept = 0;
+  // For tests and tools. False: this estimator does not know, or has not started.
+  virtual bool covariance(ErrorCovariance& covariance) const noexcept {
+    (void)covariance;
+    return false;
+  }
   // Instead of a start: goes on from an estimator of the same type, or else from its estimate.
   virtual void take_over(const Estimator& old, const Estimate& last) noexcept {
     (void)old;

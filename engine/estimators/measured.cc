@@ -39,10 +39,11 @@ bool Measured::update(const EstimatorInput& input, Estimate& estimate) noexcept 
   accelerometer_ = R_BI_ * vector_of(input.sensors.accelerometer);
   joints_.update(input.sensors, p[parameter::joint_velocity_filter], p[parameter::encoder_time],
                  estimate.state);
-  contacts_.update(input, {.debounce = p[parameter::contact_debounce],
-                           .force = p[parameter::contact_force],
-                           .settle = p[parameter::anchor_settle],
-                           .release = p[parameter::anchor_release]});
+  contacts_.update(input.sensors, input.model, input.support,
+                   {.debounce = p[parameter::contact_debounce],
+                    .force = p[parameter::contact_force],
+                    .settle = p[parameter::anchor_settle],
+                    .release = p[parameter::anchor_release]});
   estimate.contact = contacts_.contact();
   anchor_count_ = 0;
   for (int c = 0; c < contacts_.count(); ++c) {

@@ -1,9 +1,10 @@
 // What every estimator begins with that measures: joints, contacts and the IMU, in common frames.
 #pragma once
 
-#include "engine/estimators/contact_filter.h"
-#include "engine/estimators/foot_kinematics.h"
-#include "engine/estimators/joint_filter.h"
+#include "engine/estimators/estimator.h"
+#include "engine/estimators/parts/contact_filter.h"
+#include "engine/estimators/parts/foot_kinematics.h"
+#include "engine/estimators/parts/joint_filter.h"
 
 namespace footfall::engine {
 

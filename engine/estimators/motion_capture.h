@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "engine/estimators/marker_fit.h"
 #include "engine/estimators/measured.h"
-#include "engine/estimators/motion_history.h"
+#include "engine/estimators/parts/marker_fit.h"
+#include "engine/estimators/parts/motion_history.h"
 
 namespace footfall::engine {
 

@@ -1,5 +1,5 @@
 // The closed form; see marker_fit.h.
-#include "engine/estimators/marker_fit.h"
+#include "engine/estimators/parts/marker_fit.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "engine/estimators/rotation.h"
+#include "engine/estimators/parts/rotation.h"
 
 namespace footfall::engine {
 

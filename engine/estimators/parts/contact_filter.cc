@@ -1,11 +1,11 @@
 // Contacts from switches and torques; see contact_filter.h.
-#include "engine/estimators/contact_filter.h"
+#include "engine/estimators/parts/contact_filter.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 
 #include "core/index.h"
-#include "engine/estimators/rotation.h"
+#include "engine/estimators/parts/rotation.h"
 
 namespace footfall::engine {
 
@@ -24,9 +24,10 @@ bool ContactFilter::by_switch(std::size_t c, bool closed, double debounce) noexc
 
 // Least squares over the leg's joints: (J Jᵀ) f = -J (tau - h), with a floor under J Jᵀ where the
 // leg is straight.
-double ContactFilter::leg_force(const EstimatorInput& input, int c) const noexcept {
-  const model::Kinematics3& foot = input.model.point(c);
-  const int nv = input.model.nv();
+double ContactFilter::leg_force(const hal::Sensors& sensors, const model::ControlModel& model,
+                                int c) const noexcept {
+  const model::Kinematics3& foot = model.point(c);
+  const int nv = model.nv();
   Matrix3d JJ = 1e-6 * Matrix3d::Identity();
   Vector3d Jt = Vector3d::Zero();
   for (const int joint : legs_[at(c)]) {
@@ -34,29 +35,33 @@ double ContactFilter::leg_force(const EstimatorInput& input, int c) const noexce
     const Vector3d J(foot.jacobian[column], foot.jacobian[at(nv) + column],
                      foot.jacobian[2 * at(nv) + column]);
     JJ += J * J.transpose();
-    Jt += J * (input.sensors.tau[at(joint)] - input.model.bias()[column]);
+    Jt += J * (sensors.tau[at(joint)] - model.bias()[column]);
   }
   return -(JJ.inverse() * Jt)[2];
 }
 
-void ContactFilter::update(const EstimatorInput& input, const ContactSettings& settings) noexcept {
+void ContactFilter::update(const hal::Sensors& sensors, const model::ControlModel& model,
+                           std::uint64_t support, const ContactSettings& settings) noexcept {
   using behaviors::ContactSource;
   settings_ = settings;
   for (int i = 0; i < count(); ++i) {
     const std::size_t c = at(i);
-    memory_.switched[c] = by_switch(c, input.sensors.contact[c], settings.debounce);
+    memory_.switched[c] = by_switch(c, sensors.contact[c], settings.debounce);
     if (source_ != ContactSource::switches) {
-      memory_.force[c] = leg_force(input, i);
+      memory_.force[c] = leg_force(sensors, model, i);
       memory_.pressed[c] = memory_.force[c] > (memory_.pressed[c] ? 0.5 : 1.0) * settings.force;
     }
     memory_.contact[c] = source_ == ContactSource::switches ? memory_.switched[c]
                          : source_ == ContactSource::torque
                              ? memory_.pressed[c]
                              : memory_.switched[c] || memory_.pressed[c];
-    memory_.touching[c] = memory_.contact[c] ? memory_.touching[c] + period_ : 0.0;
-    const bool relied = ((input.support >> static_cast<unsigned>(i)) & 1U) != 0;
+    // A foot that touches at the start has done so before.
+    const double before = memory_.started ? memory_.touching[c] : 1e9;
+    memory_.touching[c] = memory_.contact[c] ? before + period_ : 0.0;
+    const bool relied = ((support >> static_cast<unsigned>(i)) & 1U) != 0;
     memory_.unsupported[c] = relied ? 0.0 : memory_.unsupported[c] + period_;
   }
+  memory_.started = true;
 }
 
 bool ContactFilter::anchor(int c) const noexcept {

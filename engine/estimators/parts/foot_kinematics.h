@@ -2,8 +2,8 @@
 // of the last tick.
 #pragma once
 
-#include "engine/estimators/estimator.h"
-#include "engine/estimators/rotation.h"
+#include "engine/estimators/parts/rotation.h"
+#include "model/control_model.h"
 
 namespace footfall::engine {
 

@@ -1,5 +1,5 @@
 // Rotations; see rotation.h.
-#include "engine/estimators/rotation.h"
+#include "engine/estimators/parts/rotation.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

@@ -1,5 +1,5 @@
 // A ring of products and sums; see motion_history.h.
-#include "engine/estimators/motion_history.h"
+#include "engine/estimators/parts/motion_history.h"
 
 #include <algorithm>
 #include <cmath>

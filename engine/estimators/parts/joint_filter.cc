@@ -1,5 +1,5 @@
 // Joint positions and velocities; see joint_filter.h.
-#include "engine/estimators/joint_filter.h"
+#include "engine/estimators/parts/joint_filter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Kinematics of one contact; see foot_kinematics.h.
-#include "engine/estimators/foot_kinematics.h"
+#include "engine/estimators/parts/foot_kinematics.h"
 
 #include "core/index.h"
 

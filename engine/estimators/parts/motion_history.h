@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "engine/estimators/rotation.h"
+#include "engine/estimators/parts/rotation.h"
 
 namespace footfall::engine {
 

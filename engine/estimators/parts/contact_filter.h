@@ -1,16 +1,20 @@
 // Which contacts touch the ground, and which of them an estimator may hold on to.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "behaviors/compiled/estimator_spec.h"
-#include "engine/estimators/estimator.h"
+#include "core/capacities.h"
+#include "hal/sensor_fields.h"
+#include "model/control_model.h"
 #include "model/robot/description.h"
 
 namespace footfall::engine {
+
+// A contact each.
+using ContactFlags = std::array<bool, core::kMaxContacts>;
 
 // Live settings, from the table's rows of the same names.
 struct ContactSettings {
@@ -27,10 +31,12 @@ struct ContactSettings {
 class ContactFilter {
  public:
   ContactFilter(const model::RobotDescription& robot, behaviors::ContactSource source);
-  void update(const EstimatorInput& input, const ContactSettings& settings) noexcept;
+  // `model` of the last tick; support: bit c, the law relies on contact c.
+  void update(const hal::Sensors& sensors, const model::ControlModel& model, std::uint64_t support,
+              const ContactSettings& settings) noexcept;
   void take_over(const ContactFilter& old) noexcept { memory_ = old.memory_; }
 
-  const Contacts& contact() const noexcept { return memory_.contact; }
+  const ContactFlags& contact() const noexcept { return memory_.contact; }
   // A foot that touches, has settled, and that the law in force relies on: it keeps its place.
   bool anchor(int c) const noexcept;
   int count() const noexcept { return static_cast<int>(legs_.size()); }
@@ -39,14 +45,16 @@ class ContactFilter {
 
  private:
   bool by_switch(std::size_t c, bool closed, double debounce) noexcept;
-  double leg_force(const EstimatorInput& input, int c) const noexcept;
+  double leg_force(const hal::Sensors& sensors, const model::ControlModel& model,
+                   int c) const noexcept;
 
   behaviors::ContactSource source_;
   double period_;
   std::vector<std::vector<int>> legs_;  // joints by contact
   ContactSettings settings_;
   struct Memory {
-    Contacts contact{}, switched{}, pressed{};
+    bool started = false;
+    ContactFlags contact{}, switched{}, pressed{};
     std::array<double, core::kMaxContacts> open{};         // s that the switch has been open
     std::array<double, core::kMaxContacts> touching{};     // s since touchdown
     std::array<double, core::kMaxContacts> unsupported{};  // s

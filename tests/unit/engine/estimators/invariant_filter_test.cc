@@ -1,0 +1,300 @@
+// The filter's linear maps against finite differences, its corrections against the dense equations,
+// and its covariance against errors drawn many times.
+#include "engine/estimators/parts/invariant_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+#include "core/random.h"
+
+namespace footfall::tests {
+namespace {
+
+using engine::Matrix3d;
+using engine::Vector3d;
+using Filter = engine::InvariantFilter<2>;
+using Error = Filter::Error;
+using Covariance = Filter::Covariance;
+
+constexpr double kGravity = 9.81;
+
+// Of an estimate against the truth, by the definition in the header.
+Error error_of(const Filter& estimate, const Filter& truth) {
+  Error e = Error::Zero();
+  const Matrix3d turn = estimate.R() * truth.R().transpose();
+  const Vector3d xi = engine::rotation_log(turn);
+  const Matrix3d J_inverse = engine::left_jacobian(xi).inverse();
+  e.segment<3>(Filter::kR) = xi;
+  e.segment<3>(Filter::kV) = J_inverse * (estimate.v() - turn * truth.v());
+  e.segment<3>(Filter::kP) = J_inverse * (estimate.p() - turn * truth.p());
+  for (int i = 0; i < 2; ++i) {
+    e.segment<3>(Filter::kFeet + 3 * i) = J_inverse * (estimate.foot(i) - turn * truth.foot(i));
+  }
+  e.segment<3>(Filter::kGyroBias) = estimate.gyro_bias() - truth.gyro_bias();
+  e.segment<3>(Filter::kAccelerometerBias) =
+      estimate.accelerometer_bias() - truth.accelerometer_bias();
+  return e;
+}
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : engine_(seed) {}
+  Vector3d vector(double deviation) {
+    const double x = normal_(engine_), y = normal_(engine_), z = normal_(engine_);
+    return deviation * Vector3d(x, y, z);
+  }
+  Error error() {
+    Error e;
+    for (double& x : e) x = normal_(engine_);
+    return e;
+  }
+  Covariance covariance() {
+    Covariance M;
+    for (double& x : M.reshaped()) x = normal_(engine_);
+    return 1e-3 * M * M.transpose();
+  }
+
+ private:
+  std::mt19937_64 engine_;
+  core::Normal normal_;
+};
+
+Filter moving(Draw& draw) {
+  Filter f;
+  f.start(engine::rotation_exp(draw.vector(0.5)), draw.vector(0.5), draw.vector(1.0));
+  f.add_foot(0, draw.vector(0.5), 0.0);
+  f.add_foot(1, draw.vector(0.5), 0.0);
+  Error bias = Error::Zero();
+  bias.segment<3>(Filter::kGyroBias) = draw.vector(0.1);
+  bias.segment<3>(Filter::kAccelerometerBias) = draw.vector(0.1);
+  f.add_error(bias);
+  f.covariance() = draw.covariance();
+  return f;
+}
+
+TEST(InvariantFilter, TheErrorThatIsAddedIsTheErrorThatIsThere) {
+  Draw draw(1);
+  const Filter truth = moving(draw);
+  const Error error = 0.1 * draw.error();
+  Filter estimate = truth;
+  estimate.add_error(error);
+  EXPECT_LT((error_of(estimate, truth) - error).norm(), 1e-12);
+}
+
+// F: the error of a propagated estimate against the propagated truth, column by column; the
+// covariance follows it to first order in dt.
+TEST(InvariantFilter, TheCovarianceIsPropagatedByTheErrorsOwnMap) {
+  constexpr double kStep = 1e-5, kSize = 1e-6;
+  Draw draw(2);
+  const Filter truth = moving(draw);
+  const Vector3d gyro = draw.vector(1.0), force = draw.vector(5.0) + Vector3d(0, 0, kGravity);
+  Filter moved = truth;
+  moved.propagate(gyro, force, kGravity, kStep);
+  Covariance F;
+  for (int k = 0; k < Filter::kSize; ++k) {
+    Error error = Error::Zero();
+    error[k] = kSize;
+    Filter plus = truth, minus = truth;
+    plus.add_error(error);
+    minus.add_error(-error);
+    plus.propagate(gyro, force, kGravity, kStep);
+    minus.propagate(gyro, force, kGravity, kStep);
+    F.col(k) = (error_of(plus, moved) - error_of(minus, moved)) / (2.0 * kSize);
+  }
+  const engine::InvariantNoise noise{};
+  Filter filter = truth;
+  filter.propagate_covariance(noise, kGravity, kStep);
+  const Covariance change = (filter.covariance() - truth.covariance()) / kStep;
+  const Covariance expected = (F * truth.covariance() * F.transpose() - truth.covariance()) / kStep;
+  // Second order: dt times squares of F's entries (at most 1e2) times the covariance's (3e-2).
+  EXPECT_LT((change - expected).cwiseAbs().maxCoeff(), 1e-3 * expected.cwiseAbs().maxCoeff());
+  EXPECT_EQ(filter.covariance(), filter.covariance().transpose());
+}
+
+TEST(InvariantFilter, NoiseEntersByTheSameMap) {
+  Draw draw(3);
+  Filter f = moving(draw);
+  f.covariance().setZero();
+  const engine::InvariantNoise noise{.gyro = 0.1,
+                                     .accelerometer = 0.2,
+                                     .gyro_bias_walk = 0.3,
+                                     .accelerometer_bias_walk = 0.4,
+                                     .slip = 0.5,
+                                     .sample = 1e-3};
+  const double dt = 2e-3;
+  const Matrix3d R = f.R();
+  Eigen::Matrix<double, Filter::kSize, 3> by_gyro = Eigen::Matrix<double, Filter::kSize, 3>::Zero();
+  by_gyro.middleRows<3>(Filter::kR) = R;
+  by_gyro.middleRows<3>(Filter::kV) = engine::skew(f.v()) * R;
+  by_gyro.middleRows<3>(Filter::kP) = engine::skew(f.p()) * R;
+  for (int i = 0; i < 2; ++i) {
+    by_gyro.middleRows<3>(Filter::kFeet + 3 * i) = engine::skew(f.foot(i)) * R;
+  }
+  Covariance expected = 0.1 * 0.1 * 1e-3 * dt * by_gyro * by_gyro.transpose();
+  expected.diagonal().segment<3>(Filter::kV).array() += 0.2 * 0.2 * 1e-3 * dt;
+  expected.diagonal().segment<3>(Filter::kGyroBias).array() += 0.3 * 0.3 * dt;
+  expected.diagonal().segment<3>(Filter::kAccelerometerBias).array() += 0.4 * 0.4 * dt;
+  expected.diagonal().segment<6>(Filter::kFeet).array() += 0.5 * 0.5 * dt;
+  f.propagate_covariance(noise, kGravity, dt);
+  EXPECT_LT((f.covariance() - expected).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+// H by differences of r = R̂ h - (d̂ - p̂), then the dense Kalman equations.
+TEST(InvariantFilter, AFootCorrectsAsTheDenseEquationsDo) {
+  constexpr double kSize = 1e-6;
+  Draw draw(4);
+  const Filter truth = moving(draw);
+  const Vector3d h = truth.R().transpose() * (truth.foot(1) - truth.p());
+  const auto residual = [&](const Filter& f) -> Vector3d {
+    return f.R() * h - (f.foot(1) - f.p());
+  };
+  Eigen::Matrix<double, 3, Filter::kSize> H;
+  for (int k = 0; k < Filter::kSize; ++k) {
+    Error error = Error::Zero();
+    error[k] = kSize;
+    Filter plus = truth, minus = truth;
+    plus.add_error(error);
+    minus.add_error(-error);
+    H.col(k) = (residual(plus) - residual(minus)) / (2.0 * kSize);
+  }
+  Filter f = truth;
+  f.add_error(1e-3 * draw.error());
+  const Filter before = f;
+  const Covariance P = f.covariance();
+  const Matrix3d S = H * P * H.transpose() + 0.01 * 0.01 * Matrix3d::Identity();
+  const Eigen::Matrix<double, Filter::kSize, 3> K = P * H.transpose() * S.inverse();
+  f.correct_by_foot(1, h, 0.01, 0.0);
+  EXPECT_LT((error_of(f, before) + K * residual(before)).norm(), 1e-7);
+  EXPECT_LT((f.covariance() - (P - K * H * P)).norm(), 1e-8);
+}
+
+TEST(InvariantFilter, AHeightCorrectsAsTheDenseEquationsDo) {
+  constexpr double kSize = 1e-6;
+  Draw draw(5);
+  const Filter truth = moving(draw);
+  Eigen::Matrix<double, 1, Filter::kSize> H;
+  for (int k = 0; k < Filter::kSize; ++k) {
+    Error error = Error::Zero();
+    error[k] = kSize;
+    Filter plus = truth, minus = truth;
+    plus.add_error(error);
+    minus.add_error(-error);
+    H[k] = (plus.foot(0)[2] - minus.foot(0)[2]) / (2.0 * kSize);
+  }
+  Filter f = truth;
+  const Covariance P = f.covariance();
+  const double S = (H * P * H.transpose())(0, 0) + 0.02 * 0.02;
+  const Error K = P * H.transpose() / S;
+  const double z = truth.foot(0)[2] - 1e-3;
+  f.correct_height(0, z, 0.02);
+  EXPECT_LT((error_of(f, truth) + 1e-3 * K).norm(), 1e-7);
+  EXPECT_LT((f.covariance() - (P - K * H * P)).norm(), 1e-8);
+}
+
+TEST(InvariantFilter, AFootBeyondTheGateIsToldAndNotUsed) {
+  Draw draw(6);
+  Filter f;
+  f.start(Matrix3d::Identity(), Vector3d::Zero(), Vector3d(0, 0, 1));
+  f.add_foot(0, {0, 0, -1}, 1e-3);
+  EXPECT_LT(f.correct_by_foot(0, {0.02, 0, -1}, 1e-3, 6.0), 0.0);
+  EXPECT_EQ(f.p()[0], 0.0);
+  EXPECT_GT(f.correct_by_foot(0, {0.002, 0, -1}, 1e-3, 6.0), 0.0);
+  EXPECT_NE(f.foot(0)[0], 0.0);
+}
+
+// Heading and place cannot be seen: a turn about the vertical and a shift of everything leave every
+// measurement as it is, and the filter keeps their deviation whatever it measures.
+TEST(InvariantFilter, HeadingAndPlaceStayUncertain) {
+  Draw draw(7);
+  Filter f;
+  f.start(Matrix3d::Identity(), Vector3d::Zero(), Vector3d(0, 0, 1));
+  f.set_deviation(Filter::kR, {0.05, 0.05, 0.1});
+  f.set_deviation(Filter::kP, {0.2, 0.2, 0.2});
+  f.set_deviation(Filter::kV, {0.1, 0.1, 0.1});
+  f.add_foot(0, {0.0, 0.1, -1}, 1e-3);
+  f.add_foot(1, {0.0, -0.1, -1}, 1e-3);
+  const engine::InvariantNoise noise{.gyro = 0.01, .accelerometer = 0.1, .sample = 1e-3};
+  double yaw = f.covariance()(Filter::kR + 2, Filter::kR + 2);
+  for (int i = 0; i < 3000; ++i) {
+    f.propagate(Vector3d(0.1, 0.2, 0.3), Vector3d(0, 0, kGravity), kGravity, 1e-3);
+    f.propagate_covariance(noise, kGravity, 1e-3);
+    for (int foot = 0; foot < 2; ++foot) {
+      f.correct_by_foot(foot, f.R().transpose() * (f.foot(foot) - f.p()) + draw.vector(1e-3), 1e-3,
+                        0.0);
+    }
+    const double next = f.covariance()(Filter::kR + 2, Filter::kR + 2);
+    ASSERT_GT(next, yaw * (1.0 - 1e-12));
+    yaw = next;
+  }
+  EXPECT_LT(std::sqrt(f.covariance()(Filter::kR, Filter::kR)), 0.01);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_GT(std::sqrt(f.covariance()(Filter::kP + k, Filter::kP + k)), 0.19);
+  }
+}
+
+// Errors drawn as the filter believes them: the squared error over the covariance (NEES) has the
+// mean of its dimension, 21, with a deviation of sqrt(2 * 21 / runs).
+TEST(InvariantFilter, TheCovarianceIsThatOfTheErrors) {
+  constexpr int kRuns = 100, kTicks = 250;
+  constexpr double kDt = 2e-3;
+  const engine::InvariantNoise noise{.gyro = 0.01,
+                                     .accelerometer = 0.1,
+                                     .gyro_bias_walk = 1e-3,
+                                     .accelerometer_bias_walk = 1e-2,
+                                     .slip = 2e-3,
+                                     .sample = kDt};
+  Draw draw(8);
+  double sum = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    Filter truth;
+    truth.start(Matrix3d::Identity(), Vector3d(0.1, 0, 0), Vector3d(0, 0, 1));
+    Filter f = truth;
+    const auto spread = [&](Filter::Block block, double deviation) {
+      f.set_deviation(block, deviation * Vector3d::Ones());
+      Error error = Error::Zero();
+      error.segment<3>(block) = draw.vector(deviation);
+      return error;
+    };
+    const Error start = spread(Filter::kGyroBias, 0.01) + spread(Filter::kAccelerometerBias, 0.05) +
+                        spread(Filter::kR, 0.02) + spread(Filter::kV, 0.05) +
+                        spread(Filter::kP, 0.01);
+    f.add_error(start);
+    for (int foot = 0; foot < 2; ++foot) {
+      const Vector3d h(0.0, foot == 0 ? 0.1 : -0.1, -1.0);
+      truth.add_foot(foot, h, 0.0);
+      f.add_foot(foot, h + draw.vector(1e-3), 1e-3);
+    }
+    for (int i = 0; i < kTicks; ++i) {
+      const double t = i * kDt;
+      // Measured: true motion, the truth's biases, and noise; biases and feet of the truth wander.
+      const Vector3d w = 0.3 * Vector3d(std::sin(9 * t), std::cos(7 * t), std::sin(5 * t));
+      const Vector3d force =
+          truth.R().transpose() * (Vector3d(std::cos(8 * t), std::sin(6 * t), kGravity));
+      const Vector3d gyro = w + truth.gyro_bias();
+      const Vector3d accelerometer = force + truth.accelerometer_bias();
+      f.propagate_covariance(noise, kGravity, kDt);
+      f.propagate(gyro + draw.vector(noise.gyro), accelerometer + draw.vector(noise.accelerometer),
+                  kGravity, kDt);
+      truth.propagate(gyro, accelerometer, kGravity, kDt);
+      Error wander = Error::Zero();
+      wander.segment<3>(Filter::kGyroBias) = draw.vector(1e-3 * std::sqrt(kDt));
+      wander.segment<3>(Filter::kAccelerometerBias) = draw.vector(1e-2 * std::sqrt(kDt));
+      wander.segment<3>(Filter::kFeet) = draw.vector(2e-3 * std::sqrt(kDt));
+      wander.segment<3>(Filter::kFeet + 3) = draw.vector(2e-3 * std::sqrt(kDt));
+      truth.add_error(wander);
+      for (int foot = 0; foot < 2; ++foot) {
+        const Vector3d h = truth.R().transpose() * (truth.foot(foot) - truth.p());
+        f.correct_by_foot(foot, h + draw.vector(1e-3), 1e-3, 0.0);
+      }
+    }
+    const Error error = error_of(f, truth);
+    sum += error.dot(f.covariance().ldlt().solve(error));
+  }
+  EXPECT_NEAR(sum / kRuns, 21.0, 4.0 * std::sqrt(42.0 / kRuns));
+}
+
+}  // namespace
+}  // namespace footfall::tests
