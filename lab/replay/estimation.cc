@@ -146,13 +146,13 @@ class EstimatorRun {
   }
 
   EstimationFigures run() {
-    const double period = behavior_.robot.period_s();
+    const auto rate = static_cast<double>(log_.rate_mhz);
     const std::int64_t end = log_.inputs.first_tick + log_.inputs.ticks();
     for (std::int64_t tick = log_.inputs.first_tick; tick < end; ++tick) {
       hal::Commands ignored;
       const bool fresh = layout_.unpack(log_.inputs.row(tick), sensors_, ignored);
       const bool estimated = step(tick, fresh);
-      const double time = static_cast<double>(std::max<std::int64_t>(tick, 0)) * period;
+      const double time = static_cast<double>(std::max<std::int64_t>(tick, 0)) * 1e3 / rate;
       if (time < figures_.from) continue;
       if (!estimated) ++figures_.without;
       if (estimated && sensors_.has_truth) compare(tick);
