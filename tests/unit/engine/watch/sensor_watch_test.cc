@@ -198,6 +198,17 @@ TEST_F(SensorWatchTest, WhatTheEstimatorDoesNotUseMayBeAnything) {
   EXPECT_FALSE(tick([](hal::Sensors& s) { s.gyro[0] = kNan; }).infinite);
 }
 
+TEST_F(SensorWatchTest, GoesOnFromAnotherWatch) {
+  const auto stale = [](hal::Sensors& s) { s.imu_fresh = false; };
+  watch(EstimatorType::true_state);
+  tick();
+  for (int k = 0; k < 4; ++k) tick(stale);
+  const SensorWatch old = *watch_;
+  watch(EstimatorType::contact_kalman);
+  watch_->take_over(old);
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, stale), 2);  // 4 and 2 ms are beyond 5 ms
+}
+
 TEST_F(SensorWatchTest, AllocatesNothing) {
   watch(EstimatorType::motion_capture);
   tick();
