@@ -73,10 +73,10 @@ void load_contents(LoadContext& context) {
   load_planners(context);
   load_events(context);
   load_scripts(context);
+  load_estimator(context);
   load_signals(context);
   load_gains(context);
   load_torque_loops(context);
-  load_estimator(context);
   load_transitions(context);
   load_invokes(context);
   load_control(context);

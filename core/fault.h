@@ -29,6 +29,8 @@ enum class Fault : std::uint8_t {
   swing_contact,      // a foot that should swing bears load for more than half of its phase
   condition,          // a task level is worse conditioned than `limits.condition`
   load_air,           // a foot that swung is loaded without ground contact
+  sensor_clock,       // the sensors' clock jumps or stands still
+  sensor_nan,         // a measured value that the estimator uses is NaN or infinite
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -39,10 +41,10 @@ enum class Reaction : std::uint8_t { keep_going, safe_state, safe_stop };
 // Dotted name, e.g. "torque.limit".
 constexpr std::string_view fault_name(Fault fault) {
   constexpr std::array<std::string_view, kFaultCount> names = {
-      "fall",         "non_finite",   "torque.limit",  "torque.step",    "joint.limit",
-      "swing.long",   "simulator",    "sensor.stale",  "imu.stale",      "mocap.stale",
-      "tick.overrun", "planner.late", "execution",     "event.overflow", "rank.loss",
-      "no_estimate",  "script.stuck", "swing.contact", "condition",      "load.air"};
+      "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
+      "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
+      "execution", "event.overflow", "rank.loss",    "no_estimate", "script.stuck", "swing.contact",
+      "condition", "load.air",       "sensor.clock", "sensor.nan"};
   return names[static_cast<std::size_t>(fault)];
 }
 

@@ -1,7 +1,9 @@
 // `footfall replay` and `footfall diff`: repeats a run from its log, and compares two logs.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <deque>
 #include <filesystem>
@@ -10,8 +12,12 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "behaviors/language/language.h"
+#include "core/diagnostics/did_you_mean.h"
+#include "core/text/json_text.h"
 #include "engine/tick/control_loop.h"
 #include "lab/log/diff.h"
+#include "lab/replay/estimation.h"
 #include "lab/replay/replay.h"
 #include "lab/run/log_setup.h"
 #include "lab/run/reload.h"
@@ -20,8 +26,10 @@ namespace footfall::apps {
 namespace {
 
 struct ReplayArguments {
-  std::string log, behavior;
-  bool verify = false;
+  std::string log, behavior, estimator;
+  std::vector<std::string> set;
+  double from = 2.0;
+  bool verify = false, json = false;
 };
 
 void print_lines(const std::vector<std::string>& lines) {
@@ -62,7 +70,37 @@ int replay_one(const std::string& name, const lab::Log& log, lab::Replay& replay
   return kGood;
 }
 
+int run_estimator(const ReplayArguments& arguments) {
+  const std::vector<std::string> known = core::word_names(behaviors::kEstimatorTypes);
+  if (std::ranges::find(known, arguments.estimator) == known.end()) {
+    throw InputError(fmt::format("--estimator: error: expected {}, got '{}'{}",
+                                 fmt::join(known, ", "), arguments.estimator,
+                                 core::did_you_mean(arguments.estimator, known)));
+  }
+  lab::EstimatorTrial trial{arguments.estimator, {}, arguments.from};
+  for (const std::string& item : arguments.set) {
+    const std::size_t sign = item.find('=');
+    if (sign == std::string::npos || sign == 0) {
+      throw InputError(fmt::format("--set {}: error: expected estimator.NAME=VALUE", item));
+    }
+    trial.set.emplace_back(item.substr(0, sign), item.substr(sign + 1));
+  }
+  const lab::Log log = read_whole_log(arguments.log);
+  try {
+    const lab::EstimationFigures figures = lab::replay_estimator(log, trial);
+    if (arguments.json) {
+      fmt::print("{}\n", core::json_text(lab::estimation_json(figures)));
+    } else {
+      fmt::print("{}", lab::estimation_text(figures));
+    }
+  } catch (const std::runtime_error& problem) {
+    throw InputError(problem.what());
+  }
+  return kGood;
+}
+
 int run_replay(const ReplayArguments& arguments) {
+  if (!arguments.estimator.empty()) return run_estimator(arguments);
   const lab::Log log = read_whole_log(arguments.log);
   const std::string file = arguments.behavior.empty() ? "" : find_behavior_file(arguments.behavior);
   lab::Replay replay(log, file);
@@ -107,7 +145,19 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_flag("--verify", arguments->verify,
                     "Compares every tick bit for bit; names the first difference (exit 1)");
   command->add_option("--behavior", arguments->behavior, "Behavior, instead of the log's");
-  command->footer("Example: footfall replay out/run --verify");
+  CLI::Option* const estimator = command->add_option(
+      "--estimator", arguments->estimator,
+      "Runs this estimator alone over the logged sensors; prints its errors from the logged truth");
+  command->add_option("--set", arguments->set, "estimator.NAME=VALUE")->needs(estimator);
+  command->add_option("--from", arguments->from, "Errors count from this time on, s")
+      ->needs(estimator)
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "The errors as one JSON object")->needs(estimator);
+  estimator->excludes("--verify")->excludes("--behavior");
+  command->footer(
+      "Example: footfall replay out/run --verify\n"
+      "         footfall replay out/run --estimator contact_kalman --json");
   command->callback(
       [arguments, &exit_code] { exit_code = guarded([&] { return run_replay(*arguments); }); });
 }

@@ -29,7 +29,7 @@ core::SignalTable symbolic_signals(bool angular) {
   core::SignalTable table;
   behaviors::register_signals(robot,
                               {{"TASK", {"AXIS"}, {angular ? core::kNone : core::kLength}, false}},
-                              {"FORCE"}, {"PLANNER"}, table);
+                              {"FORCE"}, {"PLANNER"}, table, true);
   return table;
 }
 

@@ -73,17 +73,30 @@ CheckedScenario load_checked(const RunOptions& options) {
   return {std::move(scenario), std::move(world)};
 }
 
+void inject(hal::SensorFaults& sensors, lab::InjectedFault fault, bool on) {
+  switch (fault) {
+    case lab::InjectedFault::mocap_dropout:
+      return sensors.fail(hal::SensorGroup::mocap, on);
+    case lab::InjectedFault::imu_dropout:
+      return sensors.fail(hal::SensorGroup::imu, on);
+    case lab::InjectedFault::sensor_dropout:
+      return sensors.fail(hal::SensorGroup::all, on);
+    case lab::InjectedFault::imu_freeze:
+      return sensors.freeze(hal::SensorGroup::imu, on);
+    case lab::InjectedFault::mocap_freeze:
+      return sensors.freeze(hal::SensorGroup::mocap, on);
+    case lab::InjectedFault::led_loss:
+      return sensors.hide_markers(on);
+    case lab::InjectedFault::planner_dropout:  // of the loop, not of its sensors
+      return;
+  }
+}
+
 // `aids`: grows by the holds that came.
 lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors,
                               std::vector<std::string>& aids) {
   lab::ScenarioHooks hooks;
-  hooks.fault = [&sensors](lab::InjectedFault fault, bool on) {
-    using Fault = lab::InjectedFault;
-    sensors.fail(fault == Fault::mocap_dropout ? hal::SensorGroup::mocap
-                 : fault == Fault::imu_dropout ? hal::SensorGroup::imu
-                                               : hal::SensorGroup::all,
-                 on);
-  };
+  hooks.fault = [&sensors](lab::InjectedFault fault, bool on) { inject(sensors, fault, on); };
   sim::MujocoBackend* mujoco = backend.mujoco;
   if (mujoco == nullptr) return hooks;
   hooks.push = [mujoco](const std::string& body, double force, double direction, double duration) {

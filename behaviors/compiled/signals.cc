@@ -122,12 +122,51 @@ PlannerSignals add_planner(const std::string& planner, core::SignalTable& table)
   return signals;
 }
 
+EstimateSignals add_estimate(core::SignalTable& table) {
+  EstimateSignals signals;
+  signals.gyro_bias = add_axes(table, "estimate.gyro_bias", core::kRate,
+                               "bias of the gyroscope as estimated, IMU frame");
+  signals.accelerometer_bias = add_axes(table, "estimate.accelerometer_bias", core::kAcceleration,
+                                        "bias of the accelerometer as estimated, IMU frame");
+  signals.attitude = add_axes(table, "estimate.sigma", core::kNone,
+                              "standard deviation of the base's orientation, world axes",
+                              {"roll", "pitch", "yaw"});
+  signals.position = add_axes(table, "estimate.sigma.position", core::kLength,
+                              "standard deviation of the base's position, world");
+  signals.velocity = add_axes(table, "estimate.sigma.velocity", core::kVelocity,
+                              "standard deviation of the base's velocity, world");
+  signals.markers = table.add("estimate.markers", core::kNone, "markers used of the last frame");
+  signals.marker_innovation = table.add("estimate.innovation.marker", core::kLength,
+                                        "marker measured minus predicted, rms over those seen");
+  signals.kinematic_innovation =
+      table.add("estimate.innovation.kinematic", core::kNone,
+                "contact measured minus predicted, largest of the contacts; m/s or m, by the "
+                "estimator");
+  return signals;
+}
+
+TruthSignals add_truth(core::SignalTable& table) {
+  TruthSignals signals;
+  signals.com_pos = add_axes(table, "truth.com.pos", core::kLength,
+                             "true centre of mass, world; only a simulator knows it");
+  signals.base_pos = add_axes(table, "truth.base.pos", core::kLength, "true base origin, world");
+  signals.base_vel = add_axes(table, "truth.base.vel", core::kVelocity, "its true velocity, world");
+  signals.base_rpy = add_axes(table, "truth.base.rpy", core::kNone,
+                              "true roll, pitch and yaw of the base", {"roll", "pitch", "yaw"});
+  signals.gyro_bias =
+      add_axes(table, "truth.gyro_bias", core::kRate, "true bias of the gyroscope, IMU frame");
+  signals.accelerometer_bias = add_axes(table, "truth.accelerometer_bias", core::kAcceleration,
+                                        "true bias of the accelerometer, IMU frame");
+  return signals;
+}
+
 }  // namespace
 
 SignalLayout register_signals(const model::RobotDescription& robot,
                               const std::vector<TaskName>& tasks,
                               const std::vector<std::string>& internals,
-                              const std::vector<std::string>& planners, core::SignalTable& table) {
+                              const std::vector<std::string>& planners, core::SignalTable& table,
+                              bool estimated) {
   SignalLayout layout;
   add_body(table, layout);
   add_robot(robot, table, layout);
@@ -156,6 +195,9 @@ SignalLayout register_signals(const model::RobotDescription& robot,
   layout.tick_late =
       table.add("tick.late", core::kNone, "ticks so far that began late; 0 in lock-step");
   layout.goal = add_axes(table, "goal", core::kLength, "target position", {"x", "y"});
+  if (!estimated) return layout;
+  layout.estimate = add_estimate(table);
+  layout.truth = add_truth(table);
   return layout;
 }
 

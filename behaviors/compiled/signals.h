@@ -50,6 +50,28 @@ struct TaskName {
   bool is_rate = false;  // what is measured is a rate: what is commanded is its first derivative
 };
 
+// What the estimator thinks of itself; xyz members are the index of x.
+struct EstimateSignals {
+  int gyro_bias = -1;             // estimate.gyro_bias.{x,y,z}, rad/s, IMU frame; -1: none of them
+  int accelerometer_bias = -1;    // estimate.accelerometer_bias.{x,y,z}, m/s^2, IMU frame
+  int attitude = -1;              // estimate.sigma.{roll,pitch,yaw}, rad
+  int position = -1;              // estimate.sigma.position.{x,y,z}, m, world
+  int velocity = -1;              // estimate.sigma.velocity.{x,y,z}, m/s, world
+  int markers = -1;               // estimate.markers: used of the last frame
+  int marker_innovation = -1;     // estimate.innovation.marker, m
+  int kinematic_innovation = -1;  // estimate.innovation.kinematic
+};
+
+// What a simulator knows beside the sensors, else NaN; index of x.
+struct TruthSignals {
+  int com_pos = -1;             // truth.com.pos.{x,y,z}, m, world; -1: none of them
+  int base_pos = -1;            // truth.base.pos.{x,y,z}, m, world
+  int base_vel = -1;            // truth.base.vel.{x,y,z}, m/s, world
+  int base_rpy = -1;            // truth.base.rpy.{roll,pitch,yaw}, rad
+  int gyro_bias = -1;           // truth.gyro_bias.{x,y,z}, rad/s, IMU frame
+  int accelerometer_bias = -1;  // truth.accelerometer_bias.{x,y,z}, m/s^2, IMU frame
+};
+
 // Layout of the table. All `xyz` members are the index of x; y and z follow.
 struct SignalLayout {
   int time = -1;                 // s since start
@@ -79,12 +101,15 @@ struct SignalLayout {
   int faults = -1;             // faults counted so far
   int tick_late = -1;          // ticks so far that began late
   int goal = -1;               // goal.{x,y}: target position, m
+  EstimateSignals estimate;    // none with the true state
+  TruthSignals truth;          // likewise
 };
 
-// Registers all signals in a deterministic order.
+// Registers all signals in a deterministic order. `estimated`: with those of an estimator.
 SignalLayout register_signals(const model::RobotDescription& robot,
                               const std::vector<TaskName>& tasks,
                               const std::vector<std::string>& internals,
-                              const std::vector<std::string>& planners, core::SignalTable& table);
+                              const std::vector<std::string>& planners, core::SignalTable& table,
+                              bool estimated = false);
 
 }  // namespace footfall::behaviors

@@ -110,8 +110,9 @@ std::string spread_text(const SaveSource& source, const Wanted& wanted, const st
 }
 
 // An entry that applies to several joints keeps its number as long as one of them needs it; the
-// others get their own entries.
-void edit_map(const Wanted& wanted, const double* old, std::vector<NodeEdit>& edits) {
+// others get their own entries, in the unit of the text `unit` where there is none to follow.
+void edit_map(const Wanted& wanted, const double* old, const std::string& unit,
+              std::vector<NodeEdit>& edits) {
   const core::YamlNode& node = *wanted.home.node;
   const auto entries = entries_of(wanted.home);
   const auto add = [&](std::size_t k, const std::string& like, core::Mark near) {
@@ -119,7 +120,8 @@ void edit_map(const Wanted& wanted, const double* old, std::vector<NodeEdit>& ed
         {&node, wanted.home.axes[k], near, core::quantity_text(wanted.values[k], like)});
   };
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (entries[k] == nullptr && !core::same_bits(wanted.values[k], old[k])) add(k, "", node.mark);
+    if (entries[k] == nullptr && !core::same_bits(wanted.values[k], old[k]))
+      add(k, unit, node.mark);
   }
   for (const core::YamlEntry& entry : node.entries) {
     std::vector<std::size_t> served;
@@ -185,7 +187,8 @@ std::vector<NodeEdit> edits_in_place(const SaveSource& source, const Wanted& wan
   const core::YamlNode& node = *wanted.home.node;
   std::vector<NodeEdit> edits;
   if (node.is_map()) {
-    edit_map(wanted, old, edits);
+    // A gain's unit depends on its table's type: such a number stays bare.
+    edit_map(wanted, old, info.of_estimator() ? "1 " + core::unit_text(info.dimension) : "", edits);
   } else if (node.is_sequence()) {
     for (std::size_t k = 0; k < wanted.values.size() && k < node.items.size(); ++k) {
       const core::YamlNode& item = node.items[k];

@@ -20,6 +20,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       machine_(std::make_unique<behaviors::Machine>(behavior, signals_, &model_)),
       edits_(behavior),
       estimator_(make_estimator(behavior.estimator, behavior.robot, model_)),
+      watch_(behavior.estimator, behavior.robot),
       controller_(model_, behavior.robot.torque_limits(), behaviors::controller_sizes(behavior),
                   period_),
       ranks_(behavior, model_),
@@ -37,7 +38,7 @@ void ControlLoop::start() {
   sense();
   std::copy_n(sensors_.q.begin(), model_.joint_count(), estimate_.state.q.begin());
   model_.update(estimate_.state);
-  if (!estimate_state()) {
+  if (!estimate_state(sensors_)) {
     throw std::runtime_error("no state at the start: the backend '" + hardware_.name() +
                              "' does not tell where the base is");
   }
@@ -48,11 +49,11 @@ void ControlLoop::start() {
   outside_.start(*machine_);
 }
 
-bool ControlLoop::estimate_state() noexcept {
+bool ControlLoop::estimate_state(const hal::Sensors& sensors) noexcept {
   const behaviors::EstimatorSpec& spec = behavior_.estimator;
   const auto parameters = machine_->parameters();
   return estimator_->estimate(
-      {sensors_, model_, link_.support(),
+      {sensors, model_, link_.support(),
        std::span<const double>(parameters).subspan(at(spec.first_slot), at(spec.slots))},
       estimate_);
 }
@@ -73,13 +74,14 @@ bool ControlLoop::sense() noexcept {
 void ControlLoop::compute() noexcept {
   faults_.begin_tick();
   edits_.apply(tick_, *machine_);
-  const bool estimated = estimate_state();
+  const SensorFindings sensed = watch_.check(sensors_, fresh_);
+  const bool estimated = estimate_state(watch_.usable());
   model_.update(estimate_.state);
   writer_.write_measured(time(), model_, sensors_, estimate_);
   // A foot in the air swings while another one holds; a robot on a rope may hang there.
   const bool swings = machine_->stepping() && link_.support() != 0;
   faults_.take(
-      safety_.check_state(sensors_, {fresh_, estimated, swings, estimate_.contact}, model_),
+      safety_.check_state(sensors_, {fresh_, estimated, swings, estimate_.contact, sensed}, model_),
       *machine_);
   faults_.take_late(outside_.deliver(tick_, *machine_, edits_.moved() || safety_.held_back()),
                     *machine_);

@@ -19,6 +19,7 @@
 #include "engine/tick/settings.h"
 #include "engine/tick/signals.h"
 #include "engine/tick/swing_watch.h"
+#include "engine/watch/sensor_watch.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "tasks/whole_body_controller.h"
@@ -109,7 +110,7 @@ class ControlLoop {
   void safe_stop() noexcept;
 
  private:
-  bool estimate_state() noexcept;
+  bool estimate_state(const hal::Sensors& sensors) noexcept;
 
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
@@ -120,6 +121,7 @@ class ControlLoop {
   std::unique_ptr<behaviors::Machine> machine_;
   EditDoor edits_;
   std::unique_ptr<Estimator> estimator_;
+  SensorWatch watch_;
   tasks::WholeBodyController controller_;
   RankWatch ranks_;
   SwingWatch swings_;

@@ -41,8 +41,10 @@ FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, const TickS
   if (!tick.estimated) findings.add(Fault::no_estimate);
   check_swings(tick, findings);
   if (sensors.backend_fault) findings.add(Fault::simulator_warning);
-  if (!sensors.imu_fresh) findings.add(Fault::imu_stale);
-  if (!sensors.mocap_fresh) findings.add(Fault::mocap_stale);
+  if (tick.sensed.imu_stale) findings.add(Fault::imu_stale);
+  if (tick.sensed.mocap_stale) findings.add(Fault::mocap_stale);
+  if (tick.sensed.clock) findings.add(Fault::sensor_clock);
+  if (tick.sensed.infinite) findings.add(Fault::sensor_nan);
   const model::State& state = model.state();
   bool finite = true;
   for (int j = 0; j < model.joint_count(); ++j) {

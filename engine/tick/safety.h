@@ -6,6 +6,7 @@
 
 #include "engine/estimators/estimator.h"
 #include "engine/tick/faults.h"
+#include "engine/watch/sensor_watch.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "model/robot/description.h"
@@ -18,6 +19,7 @@ struct TickStart {
   bool estimated = true;  // the estimator gave a state
   bool stepping = false;  // the behavior steps on some foot: one in the air is a swing
   Contacts contact{};     // as estimated
+  SensorFindings sensed{};
 };
 
 class SafetyFilter {

@@ -8,6 +8,7 @@
 
 #include "behaviors/compiled/take_over_map.h"
 #include "core/index.h"
+#include "engine/estimators/truth.h"
 
 namespace footfall::engine {
 namespace {
@@ -80,6 +81,8 @@ void SignalWriter::write_measured(double time, const model::ControlModel& model,
     put(signals_, layout.force[c], sensors.force[c]);
   }
   put(signals_, layout.aid_force, sensors.aid_force);
+  write_quality(estimate.quality);
+  write_truth(model, sensors);
   signals_[layout.motor_saturated] = sensors.motor_saturated ? 1.0 : 0.0;
   for (std::size_t p = 0; p < layout.point.size(); ++p) {
     put(signals_, layout.point[p], model.point_position(static_cast<int>(p)));
@@ -90,6 +93,36 @@ void SignalWriter::write_measured(double time, const model::ControlModel& model,
     signals_[layout.joint[j] + 2] = sensors.tau[j];
     signals_[layout.joint[j] + 4] = sensors.motor_torque[j];
   }
+}
+
+void SignalWriter::write_quality(const EstimateQuality& quality) noexcept {
+  const behaviors::EstimateSignals& out = behavior_.layout.estimate;
+  if (out.markers < 0) return;
+  put(signals_, out.gyro_bias, quality.gyro_bias);
+  put(signals_, out.accelerometer_bias, quality.accelerometer_bias);
+  put(signals_, out.attitude, quality.attitude);
+  put(signals_, out.position, quality.position);
+  put(signals_, out.velocity, quality.velocity);
+  signals_[out.markers] = quality.markers;
+  signals_[out.marker_innovation] = quality.marker_innovation;
+  signals_[out.kinematic_innovation] = quality.kinematic_innovation;
+}
+
+void SignalWriter::write_truth(const model::ControlModel& model,
+                               const hal::Sensors& sensors) noexcept {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr std::array<double, 3> kNone = {kUnknown, kUnknown, kUnknown};
+  const behaviors::TruthSignals& out = behavior_.layout.truth;
+  if (out.com_pos < 0) return;
+  Truth truth{kNone, kNone, kNone, kNone};
+  if (sensors.has_truth) truth = truth_of(sensors, model);
+  put(signals_, out.com_pos, truth.com);
+  put(signals_, out.base_pos, truth.p_WB);
+  put(signals_, out.base_vel, truth.v_WB);
+  put(signals_, out.base_rpy, truth.rpy);
+  put(signals_, out.gyro_bias, sensors.sensor_truth ? sensors.true_gyro_bias : kNone);
+  put(signals_, out.accelerometer_bias,
+      sensors.sensor_truth ? sensors.true_accelerometer_bias : kNone);
 }
 
 void SignalWriter::write_control(const behaviors::Machine& machine,

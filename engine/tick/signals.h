@@ -36,6 +36,8 @@ class SignalWriter {
   void take_over(const SignalWriter& old, const behaviors::TakeOverMap& map) noexcept;
 
  private:
+  void write_quality(const EstimateQuality& quality) noexcept;
+  void write_truth(const model::ControlModel& model, const hal::Sensors& sensors) noexcept;
   void write_internals(const tasks::ControlSet& set,
                        const tasks::ControllerResult& result) noexcept;
   void write_tasks(const tasks::ControlSet& set, const tasks::ControllerResult& result) noexcept;

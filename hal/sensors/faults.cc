@@ -4,7 +4,8 @@
 namespace footfall::hal {
 
 void SensorFaults::start() {
-  failing_ = {};
+  failing_ = frozen_ = {};
+  hidden_ = false;
   real_.start();
 }
 
@@ -13,15 +14,20 @@ bool SensorFaults::read(Sensors& sensors) noexcept {
   if (failing(SensorGroup::all)) return false;
   sensors.time_ns = fresh_.time_ns;
   for_each_field(kSensorFields, [&](const auto& field) {
-    if (!failing(field.group)) sensors.*field.member = fresh_.*field.member;
+    if (failing(field.group) || frozen(field.group)) return;
+    sensors.*field.member = fresh_.*field.member;
   });
   for_each_field(kFlagFields, [&](const auto& field) {
-    if (!failing(field.group)) {
+    if (failing(field.group)) {
+      if (field.validity) sensors.*field.member = {};
+    } else if (field.validity || !frozen(field.group)) {
       sensors.*field.member = fresh_.*field.member;
-    } else if (field.validity) {
-      sensors.*field.member = {};
     }
   });
+  int seen = 0;
+  for (bool& marker : sensors.marker_seen) {
+    if (hidden_ && marker && ++seen > static_cast<int>(kFewMarkers)) marker = false;
+  }
   return fresh;
 }
 

@@ -44,6 +44,7 @@ SampleNames sample_names(const Log& log) {
   }
   const std::vector<std::string> planners = parts(log, "planner.", ".target.x");
   if (!planners.empty()) names.planner = planners.front();
+  names.odometry = has_own_frame(log.get("estimator"));
   return names;
 }
 

@@ -2,6 +2,7 @@
 #include "lab/figures/tick_sample.h"
 
 #include "behaviors/compiled/behavior.h"
+#include "behaviors/language/estimators.h"
 
 namespace footfall::lab {
 namespace {
@@ -23,7 +24,15 @@ SampleNames sample_names(const behaviors::Behavior& behavior) {
   }
   names.internals = behavior.internal_instances;
   if (!behavior.planners.empty()) names.planner = behavior.planners.front().name;
+  names.odometry = has_own_frame(behaviors::estimator_info(behavior.estimator.type).name);
   return names;
+}
+
+bool has_own_frame(std::string_view estimator) {
+  for (const behaviors::EstimatorInfo& type : behaviors::estimator_types()) {
+    if (type.name == estimator) return type.needs_imu && !type.needs_mocap;
+  }
+  return false;
 }
 
 SampleColumns sample_columns(const SampleNames& names,
@@ -50,6 +59,9 @@ SampleColumns sample_columns(const SampleNames& names,
   }
   columns.com = axes("com.pos", kXyz);
   columns.rpy = axes("base.rpy", kRpy);
+  columns.true_com = axes("truth.com.pos", kXyz);
+  if (names.odometry) columns.true_com[0] = columns.true_com[1] = -1;
+  columns.true_rpy = axes("truth.base.rpy", kRpy);
   for (const std::string& task : names.orientation_tasks) {
     columns.rpy_reference.push_back(axes("task." + task + ".reference", kRpy));
   }

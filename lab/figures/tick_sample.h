@@ -22,7 +22,10 @@ namespace footfall::lab {
 
 inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
-// SI, world frame.
+// SI, world frame. Orientation, height and place are the true ones where the state is estimated and
+// a simulator tells the truth: a robot is judged by what it did, not by what it believed. An
+// estimator without motion capture drifts, and the frame of its goals with it: there the place in
+// the horizontal plane is the estimated one.
 struct TickSample {
   double time = 0.0;
   std::int64_t ticks = 1;  // that it stands for: a log has not a row of each
@@ -49,9 +52,12 @@ struct TickSample {
 struct SampleNames {
   std::vector<std::string> contacts, joints, internals;
   std::vector<std::string> height_tasks, orientation_tasks;
-  std::string planner;  // the first one; empty: none
+  std::string planner;    // the first one; empty: none
+  bool odometry = false;  // the estimator's frame is its own: goals are told in that one
 };
 SampleNames sample_names(const behaviors::Behavior& behavior);
+// Whether an estimator, by its name, has no place in the world to begin from.
+bool has_own_frame(std::string_view estimator);
 
 // Indices of the signals; -1: there is none.
 struct SampleColumns {
@@ -59,6 +65,7 @@ struct SampleColumns {
   std::vector<int> contact, command;
   std::vector<std::array<int, 3>> point;
   std::array<int, 3> com{}, rpy{};
+  std::array<int, 3> true_com{}, true_rpy{};      // instead, where they have a value
   std::vector<std::array<int, 3>> rpy_reference;  // of each task
   std::vector<int> height_reference;
   std::array<int, 2> goal{}, target{};
@@ -86,6 +93,12 @@ TickSample read_sample(const SampleColumns& columns, const Value& value) noexcep
   }
   numbers(columns.com, sample.com, 0.0);
   numbers(columns.rpy, sample.rpy, 0.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double com = number(columns.true_com[k], kAbsent);
+    const double angle = number(columns.true_rpy[k], kAbsent);
+    if (com == com) sample.com[k] = com;
+    if (angle == angle) sample.rpy[k] = angle;
+  }
   for (const auto& task : columns.rpy_reference) {
     for (std::size_t k = 0; k < 3; ++k) {
       const double reference = number(task[k], kAbsent);

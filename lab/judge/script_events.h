@@ -96,7 +96,8 @@ class ScenarioCues {
   std::vector<Cue> cues_;
   std::vector<Watched> watched_;
   std::vector<Lasting> lasting_;
-  std::array<int, 4> failing_{};    // by InjectedFault: entries that have it fail now
+  std::array<int, kInjectedFaultCount>
+      failing_{};                   // by InjectedFault: entries that have it fail now
   std::optional<ScenarioLua> lua_;  // if some entry calls
   std::vector<ScenarioFailure> problems_;
 };

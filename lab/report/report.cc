@@ -119,6 +119,7 @@ std::string report_html(const Log& log, const ReportOptions& options) {
                                          posture_section(log),
                                          torque_section(log),
                                          actuator_section(log),
+                                         estimation_section(log),
                                          force_section(log),
                                          planner_section(log, figures),
                                          state_section(options),

@@ -28,6 +28,8 @@ Section posture_section(const Log& log);
 Section torque_section(const Log& log);
 // Empty unless the run had series-elastic actuators.
 Section actuator_section(const Log& log);
+// Empty unless an estimator other than the true state ran (lab/report/estimation).
+Section estimation_section(const Log& log);
 Section force_section(const Log& log);
 Section planner_section(const Log& log, const nlohmann::json& summary);
 Section event_section(const Log& log);

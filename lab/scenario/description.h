@@ -44,7 +44,11 @@ enum class InjectedFault : std::uint8_t {
   imu_dropout,
   sensor_dropout,
   planner_dropout,
+  imu_freeze,
+  mocap_freeze,
+  led_loss,
 };
+inline constexpr std::size_t kInjectedFaultCount = 7;
 
 struct ScriptEntry {
   core::Mark mark;

@@ -1,6 +1,7 @@
 // Keys and words of a scenario file; see keys.h.
 #include "lab/scenario/keys.h"
 
+#include "lab/scenario/description.h"
 #include "model/aids/springs.h"
 #include "model/variation/variation.h"
 
@@ -42,6 +43,9 @@ constexpr WordSpec kInjectedFaultRows[] = {
     {"imu.dropout", "no IMU data"},
     {"sensor.dropout", "no data of any sensor"},
     {"planner.dropout", "no answers of planners"},
+    {"imu.freeze", "the IMU's data stay the same, and are said to be new"},
+    {"mocap.freeze", "motion capture's frames stay the same, and are said to be new"},
+    {"led.loss", "motion capture sees two markers at most"},
 };
 
 constexpr WordSpec kScenarioEndRows[] = {
@@ -137,6 +141,7 @@ constinit const core::KeyTable kGoldenKeys = {
     .doc = "A recorded trace and the tolerances of a run relative to it.",
     .keys = kGoldenRows};
 constinit const std::span<const core::WordSpec> kInjectedFaults = kInjectedFaultRows;
+static_assert(std::size(kInjectedFaultRows) == kInjectedFaultCount);
 constinit const std::span<const core::WordSpec> kScenarioEnds = kScenarioEndRows;
 
 constinit const core::FileTable kScenarioFile = {

@@ -133,6 +133,12 @@ constexpr KeySpec kLimitsRows[] = {
         "of a level's largest to its smallest pivot (`task.TASK.condition`), above which the fault "
         "`condition` is raised; at 100 an error of the model of 1 % is a whole one of the task")
         .otherwise("100"),
+    key("imu_age", quantity(kTime),
+        "time without new data of the IMU, after which `imu.stale` is raised")
+        .otherwise("20 ms"),
+    key("mocap_age", quantity(kTime),
+        "time without a new frame of motion capture, after which `mocap.stale` is raised")
+        .otherwise("200 ms"),
     key("edit_ramp", quantity(kTime),
         "minimum ramp duration of values changed by a user during a run")
         .otherwise("100 ms"),

@@ -327,6 +327,8 @@ class RobotLoader {
     read("tilt", core::kNone, std::numbers::pi, "an angle", robot_.tilt_limit);
     read("height", core::kNone, 1.0, "a part of the standing height", robot_.height_limit);
     read("torque_step", core::kTorque, kInfinity, {}, robot_.torque_step_limit);
+    read("imu_age", core::kTime, 60.0, "a time of at most 60 s", robot_.imu_age);
+    read("mocap_age", core::kTime, 60.0, "a time of at most 60 s", robot_.mocap_age);
     read("edit_ramp", core::kTime, 10.0, "a time of at most 10 s", robot_.edit_ramp);
     if (const YamlNode* const overruns = node.find("overruns")) {
       const auto count = core::read_integer(*overruns, 1, 1'000'000, diagnostics_);

@@ -23,7 +23,7 @@ struct Logged {
   lab::Log log;
 };
 
-inline Logged run_logged(Rig& rig, lab::RunSpec& spec, int row_every = 1) {
+inline Logged run_logged(Rig& rig, lab::RunSpec& spec, int row_every = 1, bool inputs = false) {
   const std::string path = temporary("run.mcap");
   lab::LogSource source;
   source.row_every = row_every;
@@ -32,7 +32,7 @@ inline Logged run_logged(Rig& rig, lab::RunSpec& spec, int row_every = 1) {
   spec.log = &writer;
   Logged logged{lab::run(*rig.loop, spec), {}};
   writer.close();
-  logged.log = lab::read_log(path, {.all_rows = true});
+  logged.log = lab::read_log(path, {.all_rows = true, .inputs = inputs});
   std::filesystem::remove(path);
   return logged;
 }

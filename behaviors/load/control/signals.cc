@@ -69,7 +69,8 @@ void load_signals(LoadContext& context) {
   for (const PlannerInfo& planner : context.behavior.planners) planners.push_back(planner.name);
   context.behavior.layout =
       register_signals(context.behavior.robot, context.behavior.task_names,
-                       context.behavior.internal_instances, planners, context.behavior.signals);
+                       context.behavior.internal_instances, planners, context.behavior.signals,
+                       context.behavior.estimator.type != EstimatorType::true_state);
 }
 
 }  // namespace footfall::behaviors

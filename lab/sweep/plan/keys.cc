@@ -12,6 +12,9 @@ constexpr WordSpec kFaultRows[] = {
     {"imu.dropout", "no IMU data"},
     {"sensor.dropout", "no data of any sensor"},
     {"planner.dropout", "no answers of planners"},
+    {"imu.freeze", "the IMU's data stay the same, and are said to be new"},
+    {"mocap.freeze", "motion capture's frames stay the same, and are said to be new"},
+    {"led.loss", "motion capture sees two markers at most"},
 };
 
 constexpr WordSpec kMethodRows[] = {

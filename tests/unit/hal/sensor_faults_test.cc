@@ -1,6 +1,8 @@
 // Sensors that fail on purpose keep their last value, group by group.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "hal/sensors/faults.h"
 
 namespace footfall::hal {
@@ -100,6 +102,42 @@ TEST_F(SensorFaultsTest, EveryFieldIsReadWhileNoneFails) {
   for_each_field(kFlagFields, [&](const auto& field) {
     EXPECT_EQ(seen_.*field.member, want.*field.member) << field.doc;
   });
+}
+
+TEST_F(SensorFaultsTest, AnImuThatIsFrozenKeepsItsValuesAndIsSaidToBeNew) {
+  sensors_.read(seen_);
+  sensors_.freeze(SensorGroup::imu, true);
+  sensors_.read(seen_);
+  EXPECT_EQ(seen_.gyro[0], 1.3);
+  EXPECT_EQ(seen_.accelerometer[2], 1.4);
+  EXPECT_TRUE(seen_.imu_fresh);
+  EXPECT_EQ(seen_.q[0], 2.0);
+  sensors_.freeze(SensorGroup::imu, false);
+  sensors_.read(seen_);
+  EXPECT_EQ(seen_.gyro[0], 3.3);
+}
+
+TEST_F(SensorFaultsTest, WhereMarkersAreLostTwoAreSeenAtMost) {
+  class ThreeMarkers final : public Hardware {
+   public:
+    std::string name() const override { return "three"; }
+    void start() override {}
+    bool read(Sensors& sensors) noexcept override {
+      sensors.marker_seen = {false, true, true, true};
+      return true;
+    }
+    void write(const Commands&) noexcept override {}
+    void safe_stop() noexcept override {}
+  } real;
+  SensorFaults sensors(real);
+  Sensors s;
+  sensors.hide_markers(true);
+  sensors.read(s);
+  EXPECT_EQ(std::ranges::count(s.marker_seen, true), 2);
+  EXPECT_TRUE(s.mocap_fresh);
+  sensors.hide_markers(false);
+  sensors.read(s);
+  EXPECT_EQ(std::ranges::count(s.marker_seen, true), 3);
 }
 
 }  // namespace

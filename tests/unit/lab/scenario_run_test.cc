@@ -185,10 +185,10 @@ TEST_F(ScenarioRunTest, AFunctionOfLuaThatFailsFailsTheRun) {
 }
 TEST_F(ScenarioRunTest, AFaultOfASensorIsReportedAndEnds) {
   const ScenarioRun done =
-      run("script: [{at: 100 ms, fault: imu.dropout, for: 10 ms}]\n"
-          "expect: [{that: in(limp), after: 100 ms, within: 1 ms}]\n");
+      run("script: [{at: 100 ms, fault: imu.dropout, for: 30 ms}]\n"
+          "expect: [{that: in(limp), after: 120 ms, within: 1 ms}]\n");  // limits.imu_age: 20 ms
   EXPECT_EQ(failures(done), "");
-  EXPECT_EQ(acts_, (std::vector<Act>{{150, "fails"}, {165, "works"}}));
+  EXPECT_EQ(acts_, (std::vector<Act>{{150, "fails"}, {195, "works"}}));
   EXPECT_EQ(done.run.faults.of(core::Fault::imu_stale), 1);
 }
 

@@ -118,7 +118,8 @@ behavior: 1
 robot: hume
 machine:
   tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}
-)");
+)",
+              1.0, nullptr, [](behaviors::Behavior& b) { b.robot.mocap_age = 0.0; });
   rig.hardware->spoil = [](hal::Sensors& s, std::int64_t tick) {
     s.mocap_fresh = tick < 5 || tick >= 80;
   };

@@ -157,7 +157,7 @@ TEST_F(EstimatorFiles, GetAnEditedParameterBackAlsoWhereTheyDoNotNameIt) {
             with_estimator("{type: motion_capture, joint_velocity_filter: 8 ms}"));
   EXPECT_EQ(saved(with_estimator("{type: motion_capture}"),
                   {{"estimator.joint_velocity_filter", {8e-3}}}),
-            with_estimator("{type: motion_capture, joint_velocity_filter: 0.008}"));
+            with_estimator("{type: motion_capture, joint_velocity_filter: 0.008 s}"));
 }
 
 }  // namespace

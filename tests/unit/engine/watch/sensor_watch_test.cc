@@ -1,0 +1,237 @@
+// Ages, frozen sensors, the clock, and values that are not finite.
+#include "engine/watch/sensor_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "engine/tick/safety.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/fake_robot.h"
+
+namespace footfall::tests {
+namespace {
+
+using behaviors::EstimatorType;
+using engine::SensorFindings;
+using engine::SensorWatch;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// A watch on a robot of 1 kHz whose IMU and motion capture move in every tick.
+class SensorWatchTest : public testing::Test {
+ protected:
+  SensorWatchTest() {
+    robot_.rate_mhz = 1'000'000;
+    robot_.imu_age = 5e-3;
+    robot_.mocap_age = 10e-3;
+    robot_.joints.resize(2);
+  }
+  void watch(EstimatorType type,
+             behaviors::ContactSource contact = behaviors::ContactSource::switches) {
+    watch_.emplace(behaviors::EstimatorSpec{.type = type, .contact = contact}, robot_);
+  }
+  SensorFindings tick(const std::function<void(hal::Sensors&)>& change = nullptr,
+                      bool fresh = true) {
+    ++tick_;
+    const auto t = static_cast<double>(tick_);
+    sensors_.time_ns = tick_ * 1'000'000;
+    sensors_.gyro = {t, 0.0, 0.0};
+    sensors_.accelerometer = {0.0, 0.0, 9.81};
+    for (std::size_t m = 0; m < 4; ++m) {
+      sensors_.marker[m] = {t, 0.1 * static_cast<double>(m), 1.0};
+      sensors_.marker_seen[m] = true;
+    }
+    sensors_.imu_fresh = sensors_.mocap_fresh = true;
+    sensors_.q = {};
+    if (change) change(sensors_);
+    return watch_->check(sensors_, fresh);
+  }
+  // Ticks with this change until the finding, at most 100.
+  int ticks_until(bool SensorFindings::*finding, const std::function<void(hal::Sensors&)>& change) {
+    for (int k = 1; k <= 100; ++k) {
+      if (tick(change).*finding) return k;
+    }
+    return -1;
+  }
+
+  model::RobotDescription robot_;
+  std::optional<SensorWatch> watch_;
+  hal::Sensors sensors_;
+  std::int64_t tick_ = 0;
+};
+
+TEST_F(SensorWatchTest, DataThatAreNotNewAreStaleBeyondTheLimitForEveryEstimator) {
+  for (const auto type :
+       {EstimatorType::true_state, EstimatorType::motion_capture, EstimatorType::contact_kalman}) {
+    watch(type);
+    tick();
+    EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, [](hal::Sensors& s) { s.imu_fresh = false; }),
+              6);  // 5 ms are allowed
+    EXPECT_EQ(
+        ticks_until(&SensorFindings::mocap_stale, [](hal::Sensors& s) { s.mocap_fresh = false; }),
+        11);
+    const SensorFindings after = tick();
+    EXPECT_FALSE(after.imu_stale || after.mocap_stale || after.clock || after.infinite);
+  }
+}
+
+TEST_F(SensorWatchTest, FramesMayComeAtALowerRateThanTicks) {
+  watch(EstimatorType::motion_capture);
+  for (int k = 0; k < 100; ++k) {
+    EXPECT_FALSE(tick([&](hal::Sensors& s) { s.mocap_fresh = k % 4 == 0; }).mocap_stale);
+  }
+}
+
+TEST_F(SensorWatchTest, AFrozenImuIsStaleWhereItIsNeeded) {
+  const auto freeze = [](hal::Sensors& s) { s.gyro = {1.0, 0.0, 0.0}; };
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), 7);  // the first one differs
+  watch(EstimatorType::true_state);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), -1);
+}
+
+TEST_F(SensorWatchTest, AnImuThatHasNeverMovedIsNotFrozen) {
+  watch(EstimatorType::contact_kalman);
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale,
+                        [](hal::Sensors& s) {
+                          s.gyro = {0.0, 0.0, 0.0};
+                        }),
+            -1);
+}
+
+TEST_F(SensorWatchTest, AGyroscopeAtRestIsNotFrozenWhileTheAccelerometerMoves) {
+  watch(EstimatorType::contact_kalman);
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale,
+                        [this](hal::Sensors& s) {
+                          s.gyro = {};
+                          s.accelerometer[2] = 9.81 + 1e-3 * static_cast<double>(tick_ % 2);
+                        }),
+            -1);
+}
+
+TEST_F(SensorWatchTest, FramesThatRepeatOrShowTooFewMarkersAreStaleWhereTheyAreNeeded) {
+  const auto freeze = [](hal::Sensors& s) {
+    for (auto& marker : s.marker) marker = {1.0, 2.0, 3.0};
+  };
+  const auto hide = [](hal::Sensors& s) { s.marker_seen = {true, true}; };
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, freeze), 12);
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, hide), 11);
+  watch(EstimatorType::contact_kalman);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, hide), -1);
+}
+
+TEST_F(SensorWatchTest, AReadThatBringsNothingAgesNothing) {
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  for (int k = 0; k < 100; ++k) {
+    const SensorFindings found = tick([](hal::Sensors& s) { s.imu_fresh = false; }, false);
+    EXPECT_FALSE(found.imu_stale || found.mocap_stale || found.clock);
+  }
+}
+
+TEST_F(SensorWatchTest, TheClockMayNeitherGoBackNorStandStillNorJump) {
+  watch(EstimatorType::true_state);
+  EXPECT_FALSE(tick().clock);
+  EXPECT_FALSE(tick().clock);
+  EXPECT_TRUE(tick([](hal::Sensors& s) { s.time_ns -= 1'000'000; }).clock);  // stands still
+  EXPECT_FALSE(tick([](hal::Sensors& s) { s.time_ns -= 500'000; }).clock);
+  EXPECT_TRUE(tick([](hal::Sensors& s) { s.time_ns -= 3'000'000; }).clock);  // goes back
+  EXPECT_FALSE(tick().clock);
+  EXPECT_FALSE(tick([](hal::Sensors& s) { s.time_ns += 9'000'000; }).clock);
+  tick_ += 20;
+  EXPECT_TRUE(tick().clock);
+}
+
+TEST_F(SensorWatchTest, AClockGoesOnWhileReadsBringNothing) {
+  watch(EstimatorType::true_state);
+  tick(), tick();
+  for (int k = 0; k < 50; ++k) tick(nullptr, false);
+  EXPECT_FALSE(tick().clock);
+}
+
+TEST_F(SensorWatchTest, ABackendWithoutAClockHasNoFault) {
+  watch(EstimatorType::true_state);
+  EXPECT_EQ(ticks_until(&SensorFindings::clock, [](hal::Sensors& s) { s.time_ns = 0; }), -1);
+}
+
+TEST_F(SensorWatchTest, AnEstimatorGetsTheLastGoodValueInsteadOfOneThatIsNotFinite) {
+  watch(EstimatorType::motion_capture);
+  tick([](hal::Sensors& s) { s.q[1] = 0.25; });
+  const hal::Sensors good = sensors_;
+  const SensorFindings found = tick([](hal::Sensors& s) {
+    s.q[1] = std::numeric_limits<double>::infinity();
+    s.gyro[2] = kNan;
+    s.marker[1][0] = kNan;
+  });
+  EXPECT_TRUE(found.infinite);
+  const hal::Sensors& given = watch_->usable();
+  EXPECT_EQ(given.q[1], 0.25);
+  EXPECT_EQ(given.gyro, good.gyro);
+  EXPECT_FALSE(given.imu_fresh);
+  EXPECT_FALSE(given.marker_seen[1]);
+  EXPECT_TRUE(given.marker_seen[0] && given.mocap_fresh);
+  EXPECT_EQ(given.marker[0], sensors_.marker[0]);
+  EXPECT_FALSE(tick().infinite);
+  EXPECT_EQ(&watch_->usable(), &sensors_);
+}
+
+TEST_F(SensorWatchTest, WhatTheEstimatorDoesNotUseMayBeAnything) {
+  const auto spoil = [](hal::Sensors& s) {
+    s.tau[0] = s.marker[0][1] = kNan;
+    s.q[core::kMaxJoints - 1] = kNan;  // of no joint
+  };
+  watch(EstimatorType::contact_kalman);
+  EXPECT_FALSE(tick(spoil).infinite);
+  watch(EstimatorType::contact_kalman, behaviors::ContactSource::torque);
+  EXPECT_TRUE(tick(spoil).infinite);
+  watch(EstimatorType::true_state);
+  EXPECT_FALSE(tick([](hal::Sensors& s) { s.gyro[0] = kNan; }).infinite);
+}
+
+TEST_F(SensorWatchTest, GoesOnFromAnotherWatch) {
+  const auto stale = [](hal::Sensors& s) { s.imu_fresh = false; };
+  watch(EstimatorType::true_state);
+  tick();
+  for (int k = 0; k < 4; ++k) tick(stale);
+  const SensorWatch old = *watch_;
+  watch(EstimatorType::contact_kalman);
+  watch_->take_over(old);
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, stale), 2);  // 4 and 2 ms are beyond 5 ms
+}
+
+TEST_F(SensorWatchTest, AllocatesNothing) {
+  watch(EstimatorType::motion_capture);
+  tick();
+  const AllocationGuard guard;
+  tick();
+  EXPECT_EQ(guard.allocations(), 0);
+}
+
+TEST(SensorWatchFaults, EachFindingIsAFault) {
+  const auto behavior = load_inline(
+      "behavior: 1\nrobot: hume\nmachine: {tasks: {rest: {type: joint_damping, priority: 1, gains: "
+      "{kd: 5}}}}\n");
+  const model::ControlModel model(behavior->robot);
+  engine::SafetyFilter filter(behavior->robot);
+  engine::TickStart tick;
+  EXPECT_FALSE(filter.check_state({}, tick, model).has(core::Fault::sensor_nan));
+  tick.sensed = {.imu_stale = true, .mocap_stale = true, .clock = true, .infinite = true};
+  const engine::FaultFindings found = filter.check_state({}, tick, model);
+  for (const auto fault : {core::Fault::imu_stale, core::Fault::mocap_stale,
+                           core::Fault::sensor_clock, core::Fault::sensor_nan}) {
+    EXPECT_TRUE(found.has(fault));
+  }
+}
+
+}  // namespace
+}  // namespace footfall::tests
