@@ -33,7 +33,7 @@ constexpr std::int64_t kCause = 40;  // the tick in which something goes wrong
 constexpr int kLate = 3;             // limits.overruns of the robot
 // limits.swing, ms at 1500 Hz, half of which passes between the ticks kCause and kCause + 1.
 constexpr double kLoadedSwing = (2 * kCause + 1) / 1.5;
-constexpr int kBlind = 30;  // ticks of hume's stale_after
+constexpr int kBlind = 15;  // ticks of its motion capture's stale_after
 constexpr int kSwing = 15;  // ticks of its limits.swing where that is tried
 
 // Level 1 has rank 3 in the nominal posture; with straight legs its height cannot be moved.
@@ -214,10 +214,12 @@ class FaultReaction : public testing::TestWithParam<Case> {
     const std::string swing = fault == Fault::swing_too_long  ? "10 ms"
                               : fault == Fault::swing_contact ? fmt::format("{} ms", kLoadedSwing)
                                                               : "1 s";
-    write("robot.yaml", fmt::format("robot: 1\nbase: {}/robots/hume/robot.yaml\n"
-                                    "limits: {{swing: {}, overruns: {}}}\nfaults: {{{}: {}}}\n",
-                                    fs::absolute(FOOTFALL_SOURCE_DIR).string(), swing, kLate, name,
-                                    kReactionNames[static_cast<std::size_t>(reaction)]));
+    write("robot.yaml",
+          fmt::format("robot: 1\nbase: {}/robots/hume/robot.yaml\n"
+                      "limits: {{swing: {}, overruns: {}}}\n"
+                      "sensors: {{mocap: {{stale_after: 10 ms}}}}\nfaults: {{{}: {}}}\n",
+                      fs::absolute(FOOTFALL_SOURCE_DIR).string(), swing, kLate, name,
+                      kReactionNames[static_cast<std::size_t>(reaction)]));
     write("slow.lua", kSlowScript);
     write("behavior.yaml", behavior_text(path("robot.yaml"), name));
     core::Diagnostics diagnostics;
