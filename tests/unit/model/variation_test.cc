@@ -219,7 +219,8 @@ TEST(Variation, MistakesAreTold) {
             std::string::npos);
   EXPECT_NE(problems("friction: {range: [1, 0.5]}").find("error"), std::string::npos);
   EXPECT_NE(problems("start: {velocity: {sd: 3 cm}}").find("3 cm"), std::string::npos);
-  EXPECT_NE(problems("start: {velocity: {}}").find("expected 'sd' or 'range'"), std::string::npos);
+  EXPECT_NE(problems("start: {velocity: {}}").find("expected 'sd', 'range', 'sign' or 'ring'"),
+            std::string::npos);
   EXPECT_NE(problems("command_delay: {sd: 1 ms}").find("cannot be negative"), std::string::npos);
   EXPECT_NE(problems("push: {impulse: 1 N s}").find("between"), std::string::npos);
   EXPECT_NE(problems("push: {impulse: 1 N s, between: [-5 s, -3 s]}").find("times from 0 s on"),
