@@ -63,8 +63,16 @@ int run() {
   model::ControlModel model(robot);
   model.update(walk.truth());
   Subject mocap = make_subject(behaviors::EstimatorType::motion_capture, robot, model);
+  Subject two_feet = make_subject(behaviors::EstimatorType::contact_kalman, robot, model);
   Subject kalman = make_subject(behaviors::EstimatorType::contact_kalman, robot, model);
-  const auto tick = [&](Subject& s) {
+  // The same with both feet on the ground all the time: the dearest tick.
+  std::vector<Moment> dual_moments = moments;
+  for (Moment& m : dual_moments) {
+    m.sensors.contact = {true, true};
+    m.support = 3;
+  }
+  const auto tick = [](Subject& s, const model::ControlModel& model,
+                       const std::vector<Moment>& moments) {
     return [&](int i) {
       const Moment& m = moments[static_cast<std::size_t>(i) % moments.size()];
       s.estimator->estimate({m.sensors, model, m.support, s.parameters}, s.estimate);
@@ -77,10 +85,11 @@ int run() {
   const auto solve = [](Algebra& a) {
     return [&a](int i) { a.cases[static_cast<std::size_t>(i) % kProblems].solver->solve(); };
   };
-  enum { kMocap, kKalman, kDual, kSingle, kFactor, kCount };
+  enum { kMocap, kKalman, kTwoFeet, kDual, kSingle, kFactor, kCount };
   std::array<Part, kCount> parts;
-  parts[kMocap].call = tick(mocap);
-  parts[kKalman].call = tick(kalman);
+  parts[kMocap].call = tick(mocap, model, moments);
+  parts[kKalman].call = tick(kalman, model, moments);
+  parts[kTwoFeet].call = tick(two_feet, model, dual_moments);
   parts[kDual].call = solve(dual);
   parts[kSingle].call = solve(single);
   parts[kFactor].call = [&](int) { mj_factorM(physics, data); };
@@ -107,6 +116,7 @@ int run() {
   const nlohmann::ordered_json result = {
       {"motion_capture", figures(parts[kMocap])},
       {"contact_kalman", figures(parts[kKalman])},
+      {"contact_kalman_two_feet", figures(parts[kTwoFeet])},
       {"wbosc_dual_us", rounded(algebra)},
       {"wbosc_single_us", rounded(parts[kSingle].lowest() + parts[kFactor].lowest())},
       {"allocations", allocations}};
