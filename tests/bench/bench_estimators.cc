@@ -56,6 +56,24 @@ std::vector<Moment> record(SensedWalk& walk) {
   return moments;
 }
 
+// The same with both feet on the ground all the time: the dearest tick.
+std::vector<Moment> on_two_feet(std::vector<Moment> moments) {
+  for (Moment& m : moments) {
+    m.sensors.contact = {true, true};
+    m.support = 3;
+  }
+  return moments;
+}
+
+long allocations_of(const Part& one, const Part& other) {
+  const AllocationGuard guard;
+  for (int i = 0; i < 3000; ++i) {
+    one.call(i);
+    other.call(i);
+  }
+  return guard.allocations();
+}
+
 int run() {
   SensedWalk walk(1, laboratory_errors());
   const std::vector<Moment> moments = record(walk);
@@ -65,12 +83,7 @@ int run() {
   Subject mocap = make_subject(behaviors::EstimatorType::motion_capture, robot, model);
   Subject two_feet = make_subject(behaviors::EstimatorType::contact_kalman, robot, model);
   Subject kalman = make_subject(behaviors::EstimatorType::contact_kalman, robot, model);
-  // The same with both feet on the ground all the time: the dearest tick.
-  std::vector<Moment> dual_moments = moments;
-  for (Moment& m : dual_moments) {
-    m.sensors.contact = {true, true};
-    m.support = 3;
-  }
+  const std::vector<Moment> dual_moments = on_two_feet(moments);
   const auto tick = [](Subject& s, const model::ControlModel& model,
                        const std::vector<Moment>& moments) {
     return [&](int i) {
@@ -99,15 +112,7 @@ int run() {
   for (int round = 0; round < kRounds; ++round) {
     for (Part& part : parts) part.round();
   }
-  long allocations = 0;
-  {
-    const AllocationGuard guard;
-    for (int i = 0; i < 3000; ++i) {
-      parts[kMocap].call(i);
-      parts[kKalman].call(i);
-    }
-    allocations = guard.allocations();
-  }
+  const long allocations = allocations_of(parts[kMocap], parts[kKalman]);
   const double algebra = parts[kDual].lowest() + parts[kFactor].lowest();
   const auto figures = [&](const Part& part) {
     return nlohmann::ordered_json{{"us", rounded(part.lowest())},
