@@ -56,6 +56,24 @@ std::vector<Moment> record(SensedWalk& walk) {
   return moments;
 }
 
+// The same with both feet on the ground all the time: the dearest tick.
+std::vector<Moment> on_two_feet(std::vector<Moment> moments) {
+  for (Moment& m : moments) {
+    m.sensors.contact = {true, true};
+    m.support = 3;
+  }
+  return moments;
+}
+
+long allocations_of(const Part& one, const Part& other) {
+  const AllocationGuard guard;
+  for (int i = 0; i < 3000; ++i) {
+    one.call(i);
+    other.call(i);
+  }
+  return guard.allocations();
+}
+
 int run() {
   SensedWalk walk(1, laboratory_errors());
   const std::vector<Moment> moments = record(walk);
@@ -63,8 +81,11 @@ int run() {
   model::ControlModel model(robot);
   model.update(walk.truth());
   Subject mocap = make_subject(behaviors::EstimatorType::motion_capture, robot, model);
+  Subject two_feet = make_subject(behaviors::EstimatorType::contact_kalman, robot, model);
   Subject kalman = make_subject(behaviors::EstimatorType::contact_kalman, robot, model);
-  const auto tick = [&](Subject& s) {
+  const std::vector<Moment> dual_moments = on_two_feet(moments);
+  const auto tick = [](Subject& s, const model::ControlModel& model,
+                       const std::vector<Moment>& moments) {
     return [&](int i) {
       const Moment& m = moments[static_cast<std::size_t>(i) % moments.size()];
       s.estimator->estimate({m.sensors, model, m.support, s.parameters}, s.estimate);
@@ -77,10 +98,11 @@ int run() {
   const auto solve = [](Algebra& a) {
     return [&a](int i) { a.cases[static_cast<std::size_t>(i) % kProblems].solver->solve(); };
   };
-  enum { kMocap, kKalman, kDual, kSingle, kFactor, kCount };
+  enum { kMocap, kKalman, kTwoFeet, kDual, kSingle, kFactor, kCount };
   std::array<Part, kCount> parts;
-  parts[kMocap].call = tick(mocap);
-  parts[kKalman].call = tick(kalman);
+  parts[kMocap].call = tick(mocap, model, moments);
+  parts[kKalman].call = tick(kalman, model, moments);
+  parts[kTwoFeet].call = tick(two_feet, model, dual_moments);
   parts[kDual].call = solve(dual);
   parts[kSingle].call = solve(single);
   parts[kFactor].call = [&](int) { mj_factorM(physics, data); };
@@ -90,15 +112,7 @@ int run() {
   for (int round = 0; round < kRounds; ++round) {
     for (Part& part : parts) part.round();
   }
-  long allocations = 0;
-  {
-    const AllocationGuard guard;
-    for (int i = 0; i < 3000; ++i) {
-      parts[kMocap].call(i);
-      parts[kKalman].call(i);
-    }
-    allocations = guard.allocations();
-  }
+  const long allocations = allocations_of(parts[kMocap], parts[kKalman]);
   const double algebra = parts[kDual].lowest() + parts[kFactor].lowest();
   const auto figures = [&](const Part& part) {
     return nlohmann::ordered_json{{"us", rounded(part.lowest())},
@@ -107,6 +121,7 @@ int run() {
   const nlohmann::ordered_json result = {
       {"motion_capture", figures(parts[kMocap])},
       {"contact_kalman", figures(parts[kKalman])},
+      {"contact_kalman_two_feet", figures(parts[kTwoFeet])},
       {"wbosc_dual_us", rounded(algebra)},
       {"wbosc_single_us", rounded(parts[kSingle].lowest() + parts[kFactor].lowest())},
       {"allocations", allocations}};

@@ -1,7 +1,7 @@
 // Rotations; see rotation.h.
 #include "engine/estimators/parts/rotation.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
 

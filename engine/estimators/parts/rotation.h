@@ -1,7 +1,7 @@
 // Rotations as 3 x 3 matrices and their tangent vectors, for estimators.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 
 namespace footfall::engine {

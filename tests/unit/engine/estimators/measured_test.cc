@@ -34,7 +34,7 @@ TEST(JointFilter, MotorLessDeflectionIsTheJointWhateverTheSpring) {
   hal::Sensors sensors;
   model::State state;
   for (int i = 0; i <= 1000; ++i) {
-    const double q = 0.4 * std::sin(8.0 * dt * i), torque = 50.0 * std::sin(60.0 * dt * i);
+    const double q = 0.1 + 0.4 * std::sin(8.0 * dt * i), torque = 50.0 * std::sin(60.0 * dt * i);
     const double deflection = torque / (1.03 * spring);
     sensors.q[1] = 3.8e-4 * std::round(q / 3.8e-4);
     sensors.tau[1] = spring * deflection;
@@ -43,7 +43,7 @@ TEST(JointFilter, MotorLessDeflectionIsTheJointWhateverTheSpring) {
     // The encoder's rounding is at most half a count, and mostly averaged out.
     ASSERT_NEAR(state.q[1], q, 1.9e-4);
     if (i > 0) {
-      const double mean = (q - 0.4 * std::sin(8.0 * dt * (i - 1))) / dt;
+      const double mean = (q - 0.1 - 0.4 * std::sin(8.0 * dt * (i - 1))) / dt;
       ASSERT_NEAR(state.qd[1], mean, 1e-10);
     }
   }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "behaviors/language/estimators.h"
 #include "engine/estimators/catalogue.h"
 #include "engine/estimators/contact_kalman.h"
