@@ -179,7 +179,7 @@ Provocation provocation(Fault fault) {
       return {.spoil = lift_left, .from = 0, .after_machine = true};
     case Fault::condition:
       return {.spoil = bend_slightly, .spoiled = 1, .after_machine = true};
-    default:  // sensor.nan is of estimators that look at sensors: sensor_watch_test.cc
+    default:  // sensor.nan is of estimators that look at sensors: watch/sensor_watch_test.cc
       return sensor_provocation(fault);
   }
 }
