@@ -44,6 +44,9 @@ class ContactKalman final : public Estimator {
     bool started = false;
     bool spread = false;      // the covariance has its start
     double gyro_noise = 0.0;  // rad/s, for covariance()
+    // Of the filter's world, which follows the base, in the world of the estimate, horizontal: its
+    // place, m, and the variance that the way there has added, m^2.
+    Vector3d origin = Vector3d::Zero(), variance = Vector3d::Zero();
   };
 
   void start(const EstimatorInput& input, const Estimate& measured) noexcept;
@@ -109,6 +112,7 @@ void ContactKalman<Feet>::follow_feet(Parameters p) noexcept {
     if (anchor == nullptr) {
       if (f.has_foot(i)) f.drop_foot(i);
     } else if (!f.has_foot(i)) {
+      memory_.origin += f.anchor(memory_.variance);
       f.add_foot(i, h(*anchor), p[kalman::foot_noise]);
       if (p[kalman::ground_noise] > 0.0) f.correct_height(i, 0.0, p[kalman::ground_noise]);
     } else {
@@ -175,7 +179,7 @@ void ContactKalman<Feet>::write(Estimate& estimate) const noexcept {
   const Vector3d rate = measured_.gyro() - f.gyro_bias();
   const Vector3d arm = f.R() * measured_.imu();
   model::State& state = estimate.state;
-  state.p_WB = array_of(f.p() - arm);
+  state.p_WB = array_of(memory_.origin + f.p() - arm);
   state.q_WB = quaternion_of(f.R());
   state.v_WB = array_of(f.v() - f.R() * rate.cross(measured_.imu()));
   state.w_WB_B = array_of(rate);
@@ -205,6 +209,10 @@ void ContactKalman<Feet>::place_deviation(EstimateQuality& quality) const noexce
       array_of(P.diagonal().template segment<3>(Filter::kR).cwiseMax(0.0).cwiseSqrt());
   quality.velocity = of(Filter::kV, f.v());
   quality.position = of(Filter::kP, f.p());
+  for (int k = 0; k < 2; ++k) {
+    double& deviation = quality.position[at(k)];
+    deviation = std::sqrt(deviation * deviation + memory_.variance[k]);
+  }
 }
 
 // By the map from the filter's error to that of the base's origin, with r from it to the IMU:

@@ -141,6 +141,32 @@ void InvariantFilter<Feet>::drop_foot(int i) noexcept {
   P_.template middleCols<3>(row).setZero();
 }
 
+// For x = p, d: x̂ - c - exp([xi_R]x) (x - c) = xi_x - [c]x xi_R to first order moves the origin to c,
+// and xi_x - xi_p takes the base's own error out.
+template <int Feet>
+Vector3d InvariantFilter<Feet>::anchor(Vector3d& variance) noexcept {
+  const Vector3d c(p_[0], p_[1], 0.0);
+  const Matrix3d S = skew(c);
+  const auto shift = [&](int row) {
+    P_.template middleRows<3>(row) -= S * P_.template middleRows<3>(kR);
+    P_.template middleCols<3>(row) -= P_.template middleCols<3>(kR) * S.transpose();
+  };
+  p_ -= c;
+  shift(kP);
+  for (int i = 0; i < Feet; ++i) {
+    if (!has_foot(i)) continue;
+    const int row = kFeet + 3 * i;
+    feet_[at(i)] -= c;
+    shift(row);
+    P_.template middleRows<2>(row) -= P_.template middleRows<2>(kP);
+    P_.template middleCols<2>(row) -= P_.template middleCols<2>(kP);
+  }
+  variance.head<2>() += P_.diagonal().template segment<2>(kP);
+  P_.template middleRows<2>(kP).setZero();
+  P_.template middleCols<2>(kP).setZero();
+  return c;
+}
+
 // x = exp(-xi) x̂ with xi the gain times the residual; P -= L Lᵀ is done by the caller.
 template <int Feet>
 void InvariantFilter<Feet>::add_error(const Error& error) noexcept {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/yaml/value_reader.h"
 #include "core/yaml_text/write.h"
@@ -116,14 +117,37 @@ std::optional<SweepAxis> read_list(const core::YamlEntry& entry, Diagnostics& di
     if (item.is_scalar()) {
       if (const auto w = written(item.scalar)) value.number = w->number;
     }
-    const auto twice = [&](const SweepValue& other) { return other.text == value.text; };
-    if (std::ranges::any_of(axis.values, twice)) {
-      diagnostics.error(item.mark, "duplicate", fmt::format("the value {} twice", value.text));
-    }
     axis.values.push_back(std::move(value));
   }
   settle_units(axis);
   return axis;
+}
+
+// Each value of a list makes runs of its own.
+void refuse_equal_values(const SweepAxis& axis, Diagnostics& diagnostics) {
+  for (std::size_t k = 0; k < axis.values.size(); ++k) {
+    const SweepValue& value = axis.values[k];
+    const auto before = axis.values.begin() + static_cast<std::ptrdiff_t>(k);
+    if (std::ranges::find(axis.values.begin(), before, value.text, &SweepValue::text) == before) {
+      continue;
+    }
+    diagnostics.error(value.mark, "duplicate", fmt::format("the value {} twice", value.text));
+  }
+}
+
+// Of zipped lists the values that stand side by side make runs.
+void refuse_equal_rows(const SweepDescription& sweep, const SweepGroup& group,
+                       Diagnostics& diagnostics) {
+  std::map<std::vector<std::string>, std::size_t> rows;
+  for (std::size_t k = 0; k < group.size; ++k) {
+    std::vector<std::string> row;
+    for (const std::size_t axis : group.axes) row.push_back(sweep.axes[axis].values[k].text);
+    const auto [before, is_new] = rows.emplace(std::move(row), k);
+    if (is_new) continue;
+    diagnostics.error(sweep.axes[group.axes.front()].values[k].mark, "duplicate",
+                      fmt::format("row {} of the zipped lists is row {} once more", k + 1,
+                                  before->second + 1));
+  }
 }
 
 std::optional<SweepAxis> read_grid(const core::YamlEntry& entry, Diagnostics& diagnostics) {
@@ -242,6 +266,7 @@ void read_sweep_vary(const YamlNode& node, SweepDescription& sweep, Diagnostics&
     auto axis =
         entry.value.is_map() ? read_grid(entry, diagnostics) : read_list(entry, diagnostics);
     if (!axis) continue;
+    if (!entry.value.is_map()) refuse_equal_values(*axis, diagnostics);
     SweepGroup group;
     add_axis(sweep, group, std::move(*axis), diagnostics);
     sweep.groups.push_back(std::move(group));
@@ -263,7 +288,9 @@ void read_sweep_zip(const YamlNode& node, SweepDescription& sweep, Diagnostics& 
     }
     add_axis(sweep, group, std::move(*axis), diagnostics);
   }
-  if (!group.axes.empty()) sweep.groups.push_back(std::move(group));
+  if (group.axes.empty()) return;
+  refuse_equal_rows(sweep, group, diagnostics);
+  sweep.groups.push_back(std::move(group));
 }
 
 void read_sweep_sample(const YamlNode& node, SweepDescription& sweep, Diagnostics& diagnostics) {

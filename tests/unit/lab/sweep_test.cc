@@ -117,6 +117,8 @@ TEST(SweepPlan, MistakesAreReportedAtTheirPlace) {
   says("vary: {a: {from: 1 s, to: 2 N, count: 2}}", "expected a time, got '2 N'");
   says("vary: {a: {from: 1, to: 2, count: 1}}", "s.yaml:3:35: error:");
   says("zip: {a: [1, 2], b: [1]}", "s.yaml:3:21: error: 1 values beside 2 of 'a'");
+  says("zip: {a: [1, 1], b: [2, 2]}",
+       "s.yaml:3:14: error: row 2 of the zipped lists is row 1 once more");
   says("vary: {a: [1]}\nzip: {a: [2]}", "s.yaml:4:7: error: 'a' is given values twice");
   says("sample: {count: 2, of: {a: {normal: [1, 0]}}}", "standard deviation must be above 0");
   says("sample: {count: 2, of: {a: {uniform: [1, 2], within: [1, 2]}}}", "belongs to 'normal'");
