@@ -141,29 +141,40 @@ void InvariantFilter<Feet>::drop_foot(int i) noexcept {
   P_.template middleCols<3>(row).setZero();
 }
 
-// For x = p, d: x̂ - c - exp([xi_R]x) (x - c) = xi_x - [c]x xi_R to first order moves the origin to c,
-// and xi_x - xi_p takes the base's own error out.
+// For x = p, d: x̂ - c - exp([xi_R]x) (x - c) = xi_x - [c]x xi_R to first order moves the origin to
+// c. Then p̂ - p = xi_p - [p]x xi_R is taken out of all places, horizontally.
 template <int Feet>
 Vector3d InvariantFilter<Feet>::anchor(Vector3d& variance) noexcept {
   const Vector3d c(p_[0], p_[1], 0.0);
-  const Matrix3d S = skew(c);
-  const auto shift = [&](int row) {
-    P_.template middleRows<3>(row) -= S * P_.template middleRows<3>(kR);
-    P_.template middleCols<3>(row) -= P_.template middleCols<3>(kR) * S.transpose();
-  };
-  p_ -= c;
-  shift(kP);
+  std::array<int, Feet + 1> places{kP};
+  int count = 1;
   for (int i = 0; i < Feet; ++i) {
     if (!has_foot(i)) continue;
-    const int row = kFeet + 3 * i;
     feet_[at(i)] -= c;
-    shift(row);
-    P_.template middleRows<2>(row) -= P_.template middleRows<2>(kP);
-    P_.template middleCols<2>(row) -= P_.template middleCols<2>(kP);
+    places[at(count++)] = kFeet + 3 * i;
   }
-  variance.head<2>() += P_.diagonal().template segment<2>(kP);
-  P_.template middleRows<2>(kP).setZero();
-  P_.template middleCols<2>(kP).setZero();
+  p_ -= c;
+  const Matrix3d S = skew(c), here = skew(p_);
+  using Rows = Eigen::Matrix<double, 2, kSize>;
+  using Columns = Eigen::Matrix<double, kSize, 2>;
+  for (int k = 0; k < count; ++k) {
+    P_.template middleRows<3>(places[at(k)]) -= S * P_.template middleRows<3>(kR);
+  }
+  const Rows rows =
+      P_.template middleRows<2>(kP) - here.template topRows<2>() * P_.template middleRows<3>(kR);
+  for (int k = 0; k < count; ++k) P_.template middleRows<2>(places[at(k)]) -= rows;
+  for (int k = 0; k < count; ++k) {
+    P_.template middleCols<3>(places[at(k)]) -= P_.template middleCols<3>(kR) * S.transpose();
+  }
+  const Columns columns = P_.template middleCols<2>(kP) -
+                          P_.template middleCols<3>(kR) * here.template topRows<2>().transpose();
+  for (int k = 0; k < count; ++k) P_.template middleCols<2>(places[at(k)]) -= columns;
+  // Of p̂ - p before: the rows, less what the columns took from them.
+  const Eigen::Matrix2d before =
+      (rows.template middleCols<2>(kP) -
+       rows.template middleCols<3>(kR) * S.transpose().leftCols(2)) -
+      rows.template middleCols<3>(kR) * here.template topRows<2>().transpose();
+  variance.head<2>() += before.diagonal();
   return c;
 }
 

@@ -53,8 +53,8 @@ class InvariantFilter {
   // Puts the world's origin where the base truly is, horizontally: the base's place becomes the
   // origin without error, a foot's error what it was relative to the base. Place is not observable,
   // so that nothing is lost; but with the origin far away each correction of heading, which turns
-  // the estimate about it, would move the base and the feet. Returns the base's place before and adds
-  // the variance that it had.
+  // the estimate about it, would move the base and the feet. Returns the base's place before and
+  // adds the variance that it had.
   Vector3d anchor(Vector3d& variance) noexcept;
   void move_foot(int i, const Vector3d& shift) noexcept {
     feet_[static_cast<std::size_t>(i)] += shift;

@@ -144,9 +144,9 @@ void refuse_equal_rows(const SweepDescription& sweep, const SweepGroup& group,
     for (const std::size_t axis : group.axes) row.push_back(sweep.axes[axis].values[k].text);
     const auto [before, is_new] = rows.emplace(std::move(row), k);
     if (is_new) continue;
-    diagnostics.error(sweep.axes[group.axes.front()].values[k].mark, "duplicate",
-                      fmt::format("row {} of the zipped lists is row {} once more", k + 1,
-                                  before->second + 1));
+    diagnostics.error(
+        sweep.axes[group.axes.front()].values[k].mark, "duplicate",
+        fmt::format("row {} of the zipped lists is row {} once more", k + 1, before->second + 1));
   }
 }
 

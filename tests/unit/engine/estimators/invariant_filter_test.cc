@@ -234,6 +234,48 @@ TEST(InvariantFilter, HeadingAndPlaceStayUncertain) {
   }
 }
 
+// The estimate and the truth each put their base at the origin; the covariance follows that map of
+// the error, column by column. What a foot's place relative to the base may be wrong by stays.
+TEST(InvariantFilter, AnchoringTakesTheBasesPlaceOutOfTheErrorAndNothingElse) {
+  constexpr double kSize = 1e-6;
+  Draw draw(9);
+  const Filter truth = moving(draw);
+  Vector3d ignored = Vector3d::Zero();
+  Filter anchored = truth;
+  EXPECT_EQ(anchored.anchor(ignored), Vector3d(truth.p()[0], truth.p()[1], 0.0));
+  Covariance T;
+  for (int k = 0; k < Filter::kSize; ++k) {
+    Error error = Error::Zero();
+    error[k] = kSize;
+    Filter plus = truth, minus = truth;
+    plus.add_error(error);
+    minus.add_error(-error);
+    plus.anchor(ignored);
+    minus.anchor(ignored);
+    T.col(k) = (error_of(plus, anchored) - error_of(minus, anchored)) / (2.0 * kSize);
+  }
+  Filter filter = truth;
+  Vector3d variance = Vector3d::Zero();
+  filter.anchor(variance);
+  const Covariance expected = T * truth.covariance() * T.transpose();
+  // Second order of the differences: 1e-12 / 1e-6; places of 1 m, entries of 0.1.
+  EXPECT_LT((filter.covariance() - expected).cwiseAbs().maxCoeff(), 1e-7);
+  // p̂ - p = xi_p + xi_R x p: nothing is left of it.
+  const Eigen::Matrix<double, 2, Filter::kSize> error_of_place =
+      filter.covariance().middleRows<2>(Filter::kP) -
+      engine::skew(filter.p()).topRows<2>() * filter.covariance().middleRows<3>(Filter::kR);
+  EXPECT_LT(error_of_place.norm(), 1e-12);
+  const Matrix3d S = engine::skew(truth.p());
+  const auto& P = truth.covariance();
+  const Matrix3d place = P.block<3, 3>(Filter::kP, Filter::kP) -
+                         S * P.block<3, 3>(Filter::kR, Filter::kP) -
+                         P.block<3, 3>(Filter::kP, Filter::kR) * S.transpose() +
+                         S * P.block<3, 3>(Filter::kR, Filter::kR) * S.transpose();
+  EXPECT_NEAR(variance[0], place(0, 0), 1e-12);
+  EXPECT_NEAR(variance[1], place(1, 1), 1e-12);
+  EXPECT_LT((filter.foot(1) - filter.p() - (truth.foot(1) - truth.p())).norm(), 1e-12);
+}
+
 // Errors drawn as the filter believes them: the squared error over the covariance (NEES) has the
 // mean of its dimension, 21, with a deviation of sqrt(2 * 21 / runs).
 TEST(InvariantFilter, TheCovarianceIsThatOfTheErrors) {
