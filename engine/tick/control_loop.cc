@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "behaviors/compiled/control_set.h"
+#include "behaviors/language/estimators.h"
 #include "core/index.h"
 
 namespace footfall::engine {
@@ -39,14 +40,24 @@ void ControlLoop::start() {
   std::copy_n(sensors_.q.begin(), model_.joint_count(), estimate_.state.q.begin());
   model_.update(estimate_.state);
   if (!estimate_state(sensors_)) {
-    throw std::runtime_error("no state at the start: the backend '" + hardware_.name() +
-                             "' does not tell where the base is");
+    throw std::runtime_error(no_state());
   }
   model_.update(estimate_.state);
   writer_.write_measured(time(), model_, sensors_, estimate_);
   writer_.leave_gaps();
   machine_->start();
   outside_.start(*machine_);
+}
+
+// Why there is no state at the start, in one sentence.
+std::string ControlLoop::no_state() const {
+  const behaviors::EstimatorInfo& info = behaviors::estimator_info(behavior_.estimator.type);
+  std::string text = "no state at the start: the first data of the backend '" + hardware_.name() +
+                     "' do not give the estimator '" + std::string(info.name) + "' one";
+  if (!info.needs_mocap) return text;
+  const auto& seen = sensors_.marker_seen;
+  return text + " (motion capture sees " + std::to_string(std::ranges::count(seen, true)) +
+         " markers, at least 3 are needed)";
 }
 
 bool ControlLoop::estimate_state(const hal::Sensors& sensors) noexcept {

@@ -110,6 +110,7 @@ class ControlLoop {
   void safe_stop() noexcept;
 
  private:
+  std::string no_state() const;
   bool estimate_state(const hal::Sensors& sensors) noexcept;
 
   const behaviors::Behavior& behavior_;
