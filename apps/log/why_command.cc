@@ -65,7 +65,8 @@ int explain_fall(const WhyArguments& arguments) {
                end.empty() ? "no end in its log" : end, steps.rows.size());
     return kGood;
   }
-  fmt::print("the fall, by {}:\n{}", steps.truth ? "the simulator's truth" : "the robot's own estimate",
+  fmt::print("the fall, by {}:\n{}",
+             steps.truth ? "the simulator's truth" : "the robot's own estimate",
              lab::chain_text(steps.rows));
   return kGood;
 }
@@ -91,10 +92,10 @@ int run_why(const WhyArguments& arguments) {
 
 void add_why_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<WhyArguments>();
-  CLI::App* command = app.add_subcommand(
-      "why",
-      "Explains a moment of a run: transitions taken and not taken, with each guard's terms; or its "
-      "fall");
+  CLI::App* command = app.add_subcommand("why",
+                                         "Explains a moment of a run: transitions taken and not "
+                                         "taken, with each guard's terms; or its "
+                                         "fall");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   auto* at = command->add_option("--at", arguments->at,
                                  "A time, e.g. 12.3s (default: the fall, or the last transition)");

@@ -21,7 +21,7 @@ struct ChainLink {
   std::string_view text;    // "step of {} s"
   std::string_view reason;  // for the limit
   double limit = 0.0;
-  bool below = false;  // out of bounds below the limit, not above it
+  bool below = false;                         // out of bounds below the limit, not above it
   double (*value)(const StepRow&) = nullptr;  // NaN: not known, never out of bounds
 
   bool out_of_bounds(const StepRow& row) const {

@@ -23,7 +23,8 @@ struct StepColumn {
 
 std::span<const StepColumn> step_columns();
 
-// A table with a line of headers; the foot by its name behind the number. An empty field: not known.
+// A table with a line of headers; the foot by its name behind the number. An empty field: not
+// known.
 std::string steps_csv(const std::vector<StepRow>& rows, const std::vector<std::string>& feet);
 
 }  // namespace footfall::lab

@@ -2,7 +2,6 @@
 #include "lab/steps/step_signals.h"
 
 #include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "core/text/json_text.h"
@@ -50,11 +49,10 @@ StepSignals::StepSignals(const Log& log, const model::RobotDescription& robot) {
   for (const auto& [task, type] : types.items()) {
     const std::string stem = "task." + task;
     if (type == "point_position") {
-      tasks_.push_back({columns_of(log, stem + ".reference.", kXy),
-                        columns_of(log, stem + ".measured.", kXy)});
+      tasks_.push_back(
+          {columns_of(log, stem + ".reference.", kXy), columns_of(log, stem + ".measured.", kXy)});
     } else if (type == "body_orientation") {
-      attitudes_.push_back(
-          columns_of(log, stem + ".reference.", std::array{"roll", "pitch"}));
+      attitudes_.push_back(columns_of(log, stem + ".reference.", std::array{"roll", "pitch"}));
     }
   }
   for (const auto& contact : robot.contacts) {

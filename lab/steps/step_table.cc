@@ -92,8 +92,7 @@ void StepTable::land(int foot, const StepSample& sample) {
   row.yaw_rate = last_.yaw_rate;
   if (feet_ == 2) {
     const auto& other = sample.foot[1 - f];
-    row.width =
-        side(foot) * leftward(from_to(other.position, sample.foot[f].position), sample.yaw);
+    row.width = side(foot) * leftward(from_to(other.position, sample.foot[f].position), sample.yaw);
   }
   plan_of(row);
   rows_.push_back(row);

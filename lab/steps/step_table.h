@@ -18,7 +18,7 @@ inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 // One tick. SI, world frame unless said otherwise; NaN where something is not known.
 struct StepSample {
   struct Foot {
-    std::array<double, 3> force{};               // N, ground on robot
+    std::array<double, 3> force{};                 // N, ground on robot
     std::array<double, 3> position{}, velocity{};  // m, m/s, of the material point of contact
     std::array<double, 2> reference{kNoValue, kNoValue};  // m, of the tasks on it
     std::array<double, 2> measured{kNoValue, kNoValue};   // m, what these tasks measure
@@ -83,8 +83,8 @@ class StepTable {
   std::array<Swing, core::kMaxContacts> swing_{};
   std::array<double, core::kMaxContacts> side_{};
   double last_touchdown_ = kNoValue;
-  StepRow running_{};         // what adds up over a step
-  bool after_open_ = false;   // the last row waits for its yaw rate after the double support
+  StepRow running_{};        // what adds up over a step
+  bool after_open_ = false;  // the last row waits for its yaw rate after the double support
   std::vector<StepRow> rows_;
 };
 

@@ -12,8 +12,7 @@ namespace footfall::lab {
 namespace {
 
 // A value a step, held from its touchdown to the next.
-std::vector<float> held(const Log& log, const std::vector<StepRow>& rows,
-                        double StepRow::*value) {
+std::vector<float> held(const Log& log, const std::vector<StepRow>& rows, double StepRow::*value) {
   std::vector<float> out(log.rows(), std::numeric_limits<float>::quiet_NaN());
   std::size_t next = 0;
   for (std::size_t k = 0; k < log.rows(); ++k) {
@@ -58,7 +57,8 @@ const std::vector<StepPlot>& step_plots() {
       {"step-yaw-rate",
        "Yaw rate before and after touchdown",
        {{"before", &StepRow::yaw_rate}, {"after", &StepRow::yaw_rate_after}}},
-      {"step-friction", "Tangential over normal force, largest on one foot",
+      {"step-friction",
+       "Tangential over normal force, largest on one foot",
        {{"friction", &StepRow::friction}}},
       {"step-slip",
        "Path of loaded feet over the ground",
@@ -88,7 +88,8 @@ Section steps_section(const Log& log, const RunSteps& steps) {
     TimePlot plot{of.id, of.title, std::string(column_of(of.curves[0].value).unit), {}, false};
     for (std::size_t k = 0; k < of.curves.size(); ++k) {
       std::vector<float> values = held(log, steps.rows, of.curves[k].value);
-      if (any_value(values)) plot.curves.push_back({of.curves[k].label, kColours[k], std::move(values)});
+      if (any_value(values))
+        plot.curves.push_back({of.curves[k].label, kColours[k], std::move(values)});
     }
     if (!plot.curves.empty()) keep(section, std::move(plot));
   }
