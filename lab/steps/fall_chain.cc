@@ -15,7 +15,7 @@ namespace {
 // rates. They tell a person where to look, and decide nothing in a run.
 constexpr std::array kChainLinks = {
     ChainLink{"long_step", "step of {:.2f} s",
-              "the longest of 6000 steps that went well took 0.40 s", 0.45, false,
+              "the longest of 1800 steps that went well took 0.40 s", 0.45, false,
               [](const StepRow& r) { return r.step_time; }},
     ChainLink{"not_reached", "the foot's reference was {:.3f} m from its target",
               "a tenth of a step's width, and of the reach to either side", 0.03, false,
@@ -36,7 +36,7 @@ constexpr std::array kChainLinks = {
               "a landing foot slips 1 mm, a standing one does not", 6.0, false,
               [](const StepRow& r) { return 1e3 * (r.slip_single + r.slip_double); }},
     ChainLink{"friction", "tangential force {:.2f} of the normal one on one foot",
-              "half of what rubber on a floor gives; steps need 0.12 to 0.25", 0.35, false,
+              "half of the friction of the world; steps need 0.1 to 0.18", 0.35, false,
               [](const StepRow& r) { return r.friction; }},
     ChainLink{"yaw_rate", "turning at {:.2f} rad/s", "0.3 rad in a step", 0.8, false,
               [](const StepRow& r) {

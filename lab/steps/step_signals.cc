@@ -15,7 +15,7 @@ using StepValues = const std::vector<float>*;
 // float.
 constexpr double kSamePlace = 1e-4;  // m
 
-double step_value(StepValues column, std::size_t row, double otherwise = kNoValue) {
+double step_value(StepValues column, std::size_t row, double otherwise = kAbsent) {
   return column == nullptr ? otherwise : static_cast<double>((*column)[row]);
 }
 

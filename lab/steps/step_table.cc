@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lab/figures/step_counter.h"
+
 namespace footfall::lab {
 namespace {
 

@@ -4,32 +4,29 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/capacities.h"
-#include "lab/figures/step_counter.h"
+#include "lab/figures/tick_sample.h"
 
 namespace footfall::lab {
-
-inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 // One tick. SI, world frame unless said otherwise; NaN where something is not known.
 struct StepSample {
   struct Foot {
-    std::array<double, 3> force{};                 // N, ground on robot
-    std::array<double, 3> position{}, velocity{};  // m, m/s, of the material point of contact
-    std::array<double, 2> reference{kNoValue, kNoValue};  // m, of the tasks on it
-    std::array<double, 2> measured{kNoValue, kNoValue};   // m, what these tasks measure
+    std::array<double, 3> force{};                      // N, ground on robot
+    std::array<double, 3> position{}, velocity{};       // m, m/s, of the material point of contact
+    std::array<double, 2> reference{kAbsent, kAbsent};  // m, of the tasks on it
+    std::array<double, 2> measured{kAbsent, kAbsent};   // m, what these tasks measure
   };
   // Last answer of the first planner.
   struct Plan {
-    std::array<double, 2> target{kNoValue, kNoValue};         // m
-    std::array<double, 2> predicted_vel{kNoValue, kNoValue};  // m/s, of the CoM at touchdown
-    double landing = kNoValue;    // s, time of touchdown as planned, extension included
-    double extension = kNoValue;  // s, by the swing-time rule
-    double yaw = 0.0;             // rad, heading by the estimate, which the plan was made in
+    std::array<double, 2> target{kAbsent, kAbsent};         // m
+    std::array<double, 2> predicted_vel{kAbsent, kAbsent};  // m/s, of the CoM at touchdown
+    double landing = kAbsent;    // s, time of touchdown as planned, extension included
+    double extension = kAbsent;  // s, by the swing-time rule
+    double yaw = 0.0;            // rad, heading by the estimate, which the plan was made in
   };
   double time = 0.0;  // s
   std::array<Foot, core::kMaxContacts> foot{};
@@ -44,14 +41,14 @@ struct StepSample {
 // unit, is said once, in step_columns.cc. NaN: not known.
 struct StepRow {
   int foot = -1;  // contact
-  double number = 0.0, time = 0.0, step_time = kNoValue, flight_time = 0.0;
-  double extension = kNoValue, early = kNoValue;
+  double number = 0.0, time = 0.0, step_time = kAbsent, flight_time = 0.0;
+  double extension = kAbsent, early = kAbsent;
   double speed = 0.0, sink_speed = 0.0;
-  double error = kNoValue, not_reached = kNoValue, tracking = kNoValue;
-  double width = kNoValue;
-  double lateral_speed = 0.0, lateral_predicted = kNoValue;
-  double friction = kNoValue, slip_single = 0.0, slip_double = 0.0;
-  double yaw = 0.0, yaw_rate = 0.0, yaw_rate_after = kNoValue;
+  double error = kAbsent, not_reached = kAbsent, tracking = kAbsent;
+  double width = kAbsent;
+  double lateral_speed = 0.0, lateral_predicted = kAbsent;
+  double friction = kAbsent, slip_single = 0.0, slip_double = 0.0;
+  double yaw = 0.0, yaw_rate = 0.0, yaw_rate_after = kAbsent;
   double tilt = 0.0, saturated = 0.0, clearance = 0.0;
 };
 
@@ -82,7 +79,7 @@ class StepTable {
   StepSample last_{};
   std::array<Swing, core::kMaxContacts> swing_{};
   std::array<double, core::kMaxContacts> side_{};
-  double last_touchdown_ = kNoValue;
+  double last_touchdown_ = kAbsent;
   StepRow running_{};        // what adds up over a step
   bool after_open_ = false;  // the last row waits for its yaw rate after the double support
   std::vector<StepRow> rows_;
