@@ -15,6 +15,8 @@
 #include "core/text/whole_file.h"
 #include "core/units/units.h"
 #include "core/yaml/glob.h"
+#include "lab/steps/log_steps.h"
+#include "lab/steps/step_columns.h"
 
 namespace footfall::apps {
 namespace {
@@ -22,7 +24,7 @@ namespace {
 struct ExportArguments {
   std::string log, out, from, to;
   std::vector<std::string> signals;
-  bool csv = false, events = false, all = false;
+  bool csv = false, events = false, steps = false, all = false;
 };
 
 std::string quoted(const std::string& text) {
@@ -104,11 +106,37 @@ std::string events_csv(const lab::Log& log, const TimeSpan& span) {
   return out;
 }
 
+void put(const ExportArguments& arguments, const std::string& text) {
+  if (arguments.out.empty()) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+  } else {
+    core::write_whole_file(arguments.out, text);
+  }
+}
+
+// One table of all logs: a reload does not end a step.
+int export_steps(const ExportArguments& arguments, const std::vector<std::string>& paths,
+                 const TimeSpan& span) {
+  lab::LogSteps reader;
+  for (const std::string& path : paths) {
+    const lab::Log log = lab::read_log(path, {.all_rows = true, .inputs = true});
+    if (!log.complete) fmt::print(stderr, "warning: the log '{}' was cut off\n", log.path);
+    reader.add(log);
+  }
+  lab::RunSteps steps = reader.steps();
+  std::erase_if(steps.rows, [&](const lab::StepRow& row) {
+    return row.time < span.from || row.time > span.to;
+  });
+  put(arguments, lab::steps_csv(steps.rows, steps.feet));
+  return kGood;
+}
+
 int run_export(const ExportArguments& arguments) {
   const TimeSpan span = read_span(arguments.from, arguments.to);
   std::vector<lab::Log> logs;
   const std::vector<std::string> paths = run_logs(arguments.log);
   require_no_input("-o", arguments.out, paths);
+  if (arguments.steps) return export_steps(arguments, paths, span);
   for (const std::string& path : paths) {
     logs.push_back(lab::read_log(path, {.all_rows = arguments.all, .inputs = false}));
   }
@@ -129,11 +157,7 @@ int run_export(const ExportArguments& arguments) {
     }
     text += part;
   }
-  if (arguments.out.empty()) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-  } else {
-    core::write_whole_file(arguments.out, text);
-  }
+  put(arguments, text);
   return kGood;
 }
 
@@ -141,7 +165,7 @@ int run_export(const ExportArguments& arguments) {
 
 void add_export_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "A log as CSV: signals, or events");
+  CLI::App* command = app.add_subcommand("export", "A log as CSV: signals, events, or steps");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   command->add_flag("--csv", arguments->csv, "CSV (the only format so far)");
   auto* signals =
@@ -149,9 +173,13 @@ void add_export_command(CLI::App& app, int& exit_code) {
   signals->delimiter(',');
   auto* all =
       command->add_flag("--all", arguments->all, "All rows, not only the evenly spaced ones");
-  command->add_flag("--events", arguments->events, "Events instead of signals")
+  auto* events = command->add_flag("--events", arguments->events, "Events instead of signals")
+                     ->excludes(signals)
+                     ->excludes(all);
+  command->add_flag("--steps", arguments->steps, "Steps instead of signals: one row a touchdown")
       ->excludes(signals)
-      ->excludes(all);
+      ->excludes(all)
+      ->excludes(events);
   command->add_option("--from", arguments->from, "Begins at this time, e.g. 2s");
   command->add_option("--to", arguments->to, "Ends at this time");
   command->add_option("-o,--output", arguments->out, "Output file, instead of stdout");

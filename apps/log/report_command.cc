@@ -70,6 +70,16 @@ void draw_states(const lab::Log& log, lab::ReportOptions& options) {
   }
 }
 
+// A log whose robot cannot be loaded any more still has a report.
+lab::RunSteps steps_of(const lab::Log& log) {
+  try {
+    return lab::log_steps(log);
+  } catch (const std::runtime_error& error) {
+    std::fprintf(stderr, "warning: the report has no table of steps: %s\n", error.what());
+    return {};
+  }
+}
+
 // Writes the comparison of several logs on one page.
 void write_comparison(const ReportArguments& arguments, std::FILE* stream) {
   std::vector<std::string> names = {arguments.log};
@@ -120,8 +130,11 @@ int write_report_files(const ReportArguments& arguments, std::FILE* stream) {
       write_comparison(arguments, stream);
       return 0;
     }
-    lab::Log log = part_of(lab::read_log(path.string(), {.all_rows = true}), arguments);
     lab::ReportOptions options;
+    lab::Log log = lab::read_log(path.string(), {.all_rows = true, .inputs = true});
+    options.steps = steps_of(log);
+    log.inputs = {};
+    log = part_of(std::move(log), arguments);
     draw_states(log, options);
     options.summary_json =
         core::json_text(lab::page_summary(log, text_beside(path, "summary.json")));

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <deque>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "apps/shared/commands.h"
@@ -15,6 +16,8 @@
 #include "apps/shared/time_option.h"
 #include "core/units/units.h"
 #include "lab/replay/why.h"
+#include "lab/steps/fall_chain.h"
+#include "lab/steps/log_steps.h"
 
 namespace footfall::apps {
 namespace {
@@ -22,6 +25,7 @@ namespace {
 struct WhyArguments {
   std::string log, at;
   std::int64_t tick = -1;
+  bool fall = false, json = false;
 };
 
 std::int64_t tick_asked(const WhyArguments& arguments, const lab::Log& log) {
@@ -39,7 +43,36 @@ std::int64_t tick_asked(const WhyArguments& arguments, const lab::Log& log) {
   return tick >= end && tick <= end + rounding ? end - 1 : tick;
 }
 
+// How a fall came about over its last steps. A run that goes on to its end is no mistake of a user.
+int explain_fall(const WhyArguments& arguments) {
+  lab::LogSteps reader;
+  std::string end;
+  for (const std::string& path : run_logs(arguments.log)) {
+    const lab::Log log = lab::read_log(path, {.all_rows = true, .inputs = true});
+    reader.add(log);
+    end = lab::end_of(log);
+  }
+  const lab::RunSteps steps = reader.steps();
+  const bool fell = end == "fall";
+  if (arguments.json) {
+    nlohmann::ordered_json out = lab::chain_json(steps.rows, fell);
+    out["truth"] = steps.truth;
+    fmt::print("{}\n", out.dump());
+    return kGood;
+  }
+  if (!fell) {
+    fmt::print("the run did not fall: it ended with '{}' after {} steps\n",
+               end.empty() ? "no end in its log" : end, steps.rows.size());
+    return kGood;
+  }
+  fmt::print("the fall, by {}:\n{}",
+             steps.truth ? "the simulator's truth" : "the robot's own estimate",
+             lab::chain_text(steps.rows));
+  return kGood;
+}
+
 int run_why(const WhyArguments& arguments) {
+  if (arguments.fall) return explain_fall(arguments);
   std::deque<lab::Log> logs;  // of the run, then of each reload; a replay keeps referring to them
   for (const std::string& path : run_logs(arguments.log)) logs.push_back(read_whole_log(path));
   const std::int64_t tick = tick_asked(arguments, logs.back());
@@ -59,15 +92,21 @@ int run_why(const WhyArguments& arguments) {
 
 void add_why_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<WhyArguments>();
-  CLI::App* command = app.add_subcommand(
-      "why",
-      "Explains a moment of a run: transitions taken and not taken, with each guard's terms");
+  CLI::App* command = app.add_subcommand("why",
+                                         "Explains a moment of a run: transitions taken and not "
+                                         "taken, with each guard's terms; or its "
+                                         "fall");
   command->add_option("LOG", arguments->log, "log.mcap, or the folder it is in")->required();
   auto* at = command->add_option("--at", arguments->at,
                                  "A time, e.g. 12.3s (default: the fall, or the last transition)");
-  command->add_option("--tick", arguments->tick, "A tick instead of a time")
-      ->excludes(at)
-      ->check(at_least(0, "a whole number from 0 on"));
+  auto* tick = command->add_option("--tick", arguments->tick, "A tick instead of a time")
+                   ->excludes(at)
+                   ->check(at_least(0, "a whole number from 0 on"));
+  auto* fall = command->add_flag("--fall", arguments->fall,
+                                 "How the fall came about: what was out of bounds in its last "
+                                 "steps, and what first");
+  fall->excludes(at)->excludes(tick);
+  command->add_flag("--json", arguments->json, "The same as an object, for scripts")->needs(fall);
   command->footer("Example: footfall why out/run --at 12.3s");
   command->callback(
       [arguments, &exit_code] { exit_code = guarded([&] { return run_why(*arguments); }); });

@@ -114,6 +114,7 @@ std::string report_html(const Log& log, const ReportOptions& options) {
                                          film_section(options),
                                          mark_section(log),
                                          path_section(log),
+                                         steps_section(log, options.steps),
                                          phase_section(log),
                                          task_section(log),
                                          posture_section(log),

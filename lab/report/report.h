@@ -9,6 +9,7 @@
 
 #include "lab/log/diff.h"
 #include "lab/log/reader.h"
+#include "lab/steps/log_steps.h"
 
 namespace footfall::lab {
 
@@ -25,6 +26,7 @@ struct ReportOptions {
   std::string strip_note;               // why it is empty, e.g. the renderer's error
   std::string diagram_svg;              // state diagram, may be empty
   std::string diagram_note;             // why it is empty
+  RunSteps steps{};                     // of the run, may be empty
   bool static_plots = false;            // SVG even if the plotting library is built in
 };
 

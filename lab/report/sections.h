@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lab/report/plot.h"
+#include "lab/steps/log_steps.h"
 
 namespace footfall::lab {
 
@@ -30,6 +31,8 @@ Section torque_section(const Log& log);
 Section actuator_section(const Log& log);
 // Empty unless an estimator other than the true state ran (lab/report/estimation).
 Section estimation_section(const Log& log);
+// Figures of the single steps (lab/report/steps); empty without steps.
+Section steps_section(const Log& log, const RunSteps& steps);
 Section force_section(const Log& log);
 Section planner_section(const Log& log, const nlohmann::json& summary);
 Section event_section(const Log& log);

@@ -68,11 +68,11 @@ def run(behavior, *arguments, log=False, timeout=7200 if WANT else 900):
     return last_json(done.stdout)
 
 
-def run_all(cases):
+def run_all(cases, log=False):
     """Runs the cases, each (name, [behavior, arguments...]), two at a time; returns {name: object} in order."""
     results = {}
     with ThreadPoolExecutor(PROCESSES) as pool:
-        futures = {pool.submit(run, *arguments): name for name, arguments in cases}
+        futures = {pool.submit(run, *arguments, log=log): name for name, arguments in cases}
         try:
             for future in as_completed(futures):
                 results[futures[future]] = future.result()
