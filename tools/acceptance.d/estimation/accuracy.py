@@ -29,7 +29,7 @@ LOSS = """scenario: 1
 behavior: balance_best
 world: lab
 for: 10.5 s
-script: [{at: 10 s, fault: mocap.dropout, for: 1 s}]
+script: [{at: 10 s, fault: mocap.dropout, for: 0.5 s}]
 expect: [steps >= 20]
 """
 # Bars: name, unit's factor, must. The want is half of it; of the NEES, within 0.5 and 2 of its dimension.
