@@ -38,7 +38,7 @@ with scratch() as top, ThreadPoolExecutor(PROCESSES) as pool:
         problems += [job.result()] if job.result() else []
         progress(f"{k + 1} of {len(cases)} logs")
     progress_done()
-old, _ = unit("lab_test", "OldLog.WithoutMarkersAndEstimationIsReadReplayedAndReported")
+old, _ = unit("lab/lab_test", "OldLog.WithoutMarkersAndEstimationIsReadReplayedAndReported")
 if problems:
     print("\n".join(problems), file=sys.stderr)
 finish(f"{len(cases) - len(problems)} of {len(cases)} logs bit for bit; a log of before is {'' if old else 'NOT '}read",
