@@ -82,7 +82,7 @@ constexpr auto kContactKalman = measured_and(std::array{
     EstimatorParameter{"accelerometer_bias_walk", kAcceleration, 1e-4, 0.0, 10.0,
                        "what the accelerometer's bias wanders in 1 s"},
     EstimatorParameter{"foot_noise", kLength, 0.3e-3, 1e-6, 1.0, "of a foot's place by the joints"},
-    EstimatorParameter{"foot_slip", kLength, 1e-3, 0.0, 10.0,
+    EstimatorParameter{"foot_slip", kLength, 0.3e-3, 0.0, 10.0,
                        "what a foot on the ground wanders in 1 s"},
     EstimatorParameter{"slip_gate", kNone, 6.0, 0.0, 100.0,
                        "a foot farther off than this many standard deviations has slipped and is "
@@ -90,8 +90,9 @@ constexpr auto kContactKalman = measured_and(std::array{
     EstimatorParameter{"ground_noise", kLength, 0.0, 0.0, 1.0,
                        "a foot that lands is at height 0 with this standard deviation; 0: the "
                        "ground's height is unknown"},
-    EstimatorParameter{"start_attitude", kNone, 0.05, 1e-6, 1.0,
-                       "standard deviation at the start, rad, of roll and pitch"},
+    EstimatorParameter{"start_attitude", kNone, 0.01, 1e-6, 1.0,
+                       "standard deviation at the start, rad, of roll and pitch by one sample of "
+                       "the accelerometer"},
     EstimatorParameter{"start_velocity", kVelocity, 0.05, 1e-6, 10.0,
                        "standard deviation at the start"},
     EstimatorParameter{"start_gyro_bias", kRate, 0.5 * kDegree, 0.0, 1.0,

@@ -69,7 +69,8 @@ ColumnCodec<Word>::ColumnCodec(int columns, int known, int max_rows, double peri
       history_(at(columns * kHistory)),
       difference_(at(max_rows + kHistory)),
       residual_(at(max_rows)),
-      moves_(at(columns)) {}
+      moves_(at(columns)),
+      probes_(at(columns)) {}
 
 template <typename Word>
 std::size_t ColumnCodec<Word>::bound(int rows) const noexcept {
@@ -164,6 +165,26 @@ void ColumnCodec<Word>::try_orders(Choice choice, int c, int rows, Choice& best)
   }
 }
 
+// The value has been the same for as long as predictions look back, so that it takes no bits.
+template <typename Word>
+bool ColumnCodec<Word>::rests(int c) noexcept {
+  const Word x = column(c)[0];
+  if (moves_[at(c)] != 0) return false;
+  if (x == 0) return true;
+  return seen_ > 0 && before(c, 1) == x;
+}
+
+// Side by side what similar() looks at first: it mostly ends there, and columns lie far apart.
+template <typename Word>
+void ColumnCodec<Word>::take_probes(int rows) noexcept {
+  const int row = rows / 2;
+  for (int c = 0; c < columns_; ++c) {
+    const Word x = column(c)[row];
+    const Word other = sizeof(Word) == sizeof(double) ? word_at(c, row - 1) : static_cast<Word>(~x);
+    probes_[at(c)] = {x, other};
+  }
+}
+
 template <typename Word>
 bool ColumnCodec<Word>::similar(int c, const Choice& choice, int rows) noexcept {
   const Word* x = column(c);
@@ -176,6 +197,10 @@ bool ColumnCodec<Word>::similar(int c, const Choice& choice, int rows) noexcept 
 template <typename Word>
 typename ColumnCodec<Word>::Choice ColumnCodec<Word>::choose(int c, int rows) noexcept {
   Choice best{0, Relation::none, -1, ~std::uint64_t{0}};
+  if (rests(c)) {  // what the search below would find
+    best.order = column(c)[0] == 0 ? 0 : 1;
+    return best;
+  }
   try_orders({}, c, rows, best);
   if (moves_[at(c)] == 0 || rows < 4) return best;
   if (rates_[at(c)] >= 0) {
@@ -193,9 +218,13 @@ typename ColumnCodec<Word>::Choice ColumnCodec<Word>::choose(int c, int rows) no
   // which are derived.
   constexpr bool kInputs = sizeof(Word) == sizeof(std::uint64_t);
   constexpr Relation kOther = kInputs ? Relation::before : Relation::negative;
+  const Word x = column(c)[rows / 2];
   for (int other = 0; other < c; ++other) {
     if (moves_[at(other)] == 0) continue;
     for (const Relation relation : {Relation::same, kOther}) {
+      const Probe& probe = probes_[at(other)];
+      const Word y = relation == Relation::same ? probe.same : probe.other;
+      if (static_cast<Word>(x - y + kNear) > 2 * kNear) continue;
       const Choice choice{0, relation, other, 0};
       if (!similar(c, choice, rows)) continue;
       try_orders(choice, c, rows, best);
@@ -221,12 +250,18 @@ template <typename Word>
 std::uint8_t* ColumnCodec<Word>::encode(int rows, bool continues, std::uint8_t* out) noexcept {
   if (!continues) seen_ = 0;
   order_words(rows);
+  if (rows > 0) take_probes(rows);
   std::uint8_t* head = out;
   // Headers first, because they hardly change between blocks. Their length is not known yet.
   std::uint8_t* planes = out + 4 * (columns_ - known_);
   std::uint8_t* const planes_begin = planes;
   for (int c = known_; c < columns_; ++c) {
     const Choice choice = choose(c, rows);
+    if (rows > 0 && rests(c)) {
+      *head++ = static_cast<std::uint8_t>(choice.order);
+      *head++ = 0;
+      continue;
+    }
     difference(choice, c, rows);
     const Word* d = difference_.data() + kHistory;
     Word all = 0;

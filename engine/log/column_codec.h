@@ -74,6 +74,9 @@ class ColumnCodec {
     int reference = -1;
     std::uint64_t cost = 0;
   };
+  struct Probe {
+    Word same = 0, other = 0;  // of a row, by relation
+  };
   Word& before(int c, int back) noexcept {
     return history_[static_cast<std::size_t>(c * kHistory + back - 1)];
   }
@@ -82,6 +85,8 @@ class ColumnCodec {
   void order_words(int rows) noexcept;
   void difference(const Choice& choice, int c, int rows) noexcept;
   void try_orders(Choice choice, int c, int rows, Choice& best) noexcept;
+  bool rests(int c) noexcept;
+  void take_probes(int rows) noexcept;
   bool similar(int c, const Choice& choice, int rows) noexcept;
   Choice choose(int c, int rows) noexcept;
   void remember(int rows) noexcept;
@@ -95,6 +100,7 @@ class ColumnCodec {
   std::vector<Word> difference_;     // d of one column, preceded by kHistory rows
   std::vector<Word> residual_;       // r of one column
   std::vector<std::uint8_t> moves_;  // by column: whether its value changes
+  std::vector<Probe> probes_;        // by column, of the middle row
 };
 
 extern template class ColumnCodec<std::uint32_t>;

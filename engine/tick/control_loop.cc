@@ -84,11 +84,13 @@ bool ControlLoop::sense() noexcept {
 
 void ControlLoop::compute() noexcept {
   faults_.begin_tick();
-  edits_.apply(tick_, *machine_);
   const SensorFindings sensed = watch_.check(sensors_, fresh_);
   const bool estimated = estimate_state(watch_.usable());
   model_.update(estimate_.state);
   writer_.write_measured(time(), model_, sensors_, estimate_);
+  // After the estimate, as a replay writes what came from outside: there, too, it acts on the
+  // estimator from the next tick on.
+  edits_.apply(tick_, *machine_);
   // A foot in the air swings while another one holds; a robot on a rope may hang there.
   const bool swings = machine_->stepping() && link_.support() != 0;
   faults_.take(

@@ -200,6 +200,13 @@ class EstimatorRun {
       if (planned) figures_.com_velocity_at_plans[k].add(error);
     }
     figures_.rotation.add(angle_between(state.q_WB, sensors_.q_WB));
+    engine::ErrorCovariance covariance;
+    if (estimator_->covariance(covariance)) {
+      figures_.nees.add(normalised_error(state, true_state(sensors_), covariance));
+    }
+    const double heading = estimate_.quality.attitude[2];
+    if (figures_.ticks == 1) figures_.heading_deviation[0] = heading;
+    figures_.heading_deviation[1] = heading;
     const int markers = std::clamp(estimate_.quality.markers, 0, core::kMaxMarkers);
     figures_.markers[static_cast<std::size_t>(markers)] += 1.0;
   }
@@ -219,10 +226,13 @@ class EstimatorRun {
     const bool known = sensors_.sensor_truth;
     figures_.gyro_bias =
         known ? norm_between(quality.gyro_bias, sensors_.true_gyro_bias) : kUnknown;
+    for (std::size_t k = 0; k < 3; ++k) {
+      figures_.gyro_bias_error[k] =
+          known ? quality.gyro_bias[k] - sensors_.true_gyro_bias[k] : kUnknown;
+    }
     figures_.accelerometer_bias =
         known ? norm_between(quality.accelerometer_bias, sensors_.true_accelerometer_bias)
               : kUnknown;
-    figures_.nees = kUnknown;  // estimators do not tell their covariance
   }
 
   const Log& log_;
@@ -290,8 +300,16 @@ nlohmann::ordered_json estimation_json(const EstimationFigures& f) {
   out["com_velocity_at_plans_mps"] = estimation_axes_json(f.com_velocity_at_plans, kXyzNames);
   out["plans"] = f.com_velocity_at_plans[0].count;
   out["gyro_bias_radps"] = or_null(f.gyro_bias);
+  for (std::size_t k = 0; k < 3; ++k) {
+    out["gyro_bias_error_radps"][kXyzNames[k]] = or_null(f.gyro_bias_error[k]);
+  }
+  out["heading_deviation_rad"] = {{"from", or_null(f.heading_deviation[0])},
+                                  {"to", or_null(f.heading_deviation[1])}};
   out["accelerometer_bias_mps2"] = or_null(f.accelerometer_bias);
-  out["nees"] = or_null(f.nees);
+  out["nees"] = nullptr;
+  if (f.nees.count > 0) {
+    out["nees"] = {{"mean", or_null(f.nees.mean())}, {"dimension", kNeesDimension}};
+  }
   out["markers"] = f.markers;
   return out;
 }
@@ -320,7 +338,11 @@ std::string estimation_text(const EstimationFigures& f) {
   if (std::isfinite(f.accelerometer_bias)) {
     text += fmt::format("  acc. bias, at the end  {:10.5f} m/s^2\n", f.accelerometer_bias);
   }
-  if (std::isfinite(f.nees)) text += fmt::format("  NEES, mean             {:10.3f}\n", f.nees);
+  if (f.nees.count > 0) {
+    text +=
+        fmt::format("  NEES, mean             {:10.3f} of roll, pitch and velocity: {} expected\n",
+                    f.nees.mean(), kNeesDimension);
+  }
   if (f.markers.size() > 1) {
     for (std::size_t n = 0; n < f.markers.size(); ++n) {
       if (f.markers[n] == 0.0) continue;

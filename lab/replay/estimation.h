@@ -10,6 +10,7 @@
 
 #include "lab/figures/metrics.h"
 #include "lab/log/reader.h"
+#include "lab/replay/consistency.h"
 
 namespace footfall::lab {
 
@@ -30,10 +31,12 @@ struct EstimationFigures {
   std::array<ErrorFigure, 3> position, velocity;     // m, m/s, of the base
   std::array<ErrorFigure, 3> com_velocity;           // m/s, over all ticks
   std::array<ErrorFigure, 3> com_velocity_at_plans;  // where a planner's answer came
-  // At the end, norm; NaN: not estimated, or the truth is not known.
-  double gyro_bias = 0.0;           // rad/s
-  double accelerometer_bias = 0.0;  // m/s^2
-  double nees = 0.0;  // mean normalised squared error; NaN: the estimator offers no covariance
+  // At the end; NaN: not estimated, or the truth is not known.
+  double gyro_bias = 0.0;                     // rad/s, norm
+  std::array<double, 3> gyro_bias_error{};    // rad/s, IMU frame
+  std::array<double, 2> heading_deviation{};  // rad, by the estimator, of the first and last tick
+  double accelerometer_bias = 0.0;            // m/s^2, norm
+  NeesFigure nees;  // of roll, pitch and velocity; none: the estimator has no covariance
   std::vector<double> markers;  // share of the ticks in which it used 0, 1, ... markers
 };
 

@@ -185,6 +185,22 @@ TEST_F(Reload, TheLogGoesOnInItsOwnFolderAndAllOfItReplays) {
   EXPECT_THROW(lab::Replay alone(second), std::runtime_error);
 }
 
+// An estimator takes over the state of one of another type, and the robot walks on.
+TEST_F(Reload, ToOtherEstimatorsAndBackItStands) {
+  write("cameras.yaml", "base: first.yaml\nestimator: {type: motion_capture}\n");
+  write("legs.yaml", "base: first.yaml\nestimator: {type: contact_kalman}\n");
+  // Each is past the probation of the one before.
+  const lab::RunResult result = run({{0.8, path("cameras.yaml")},
+                                     {3.4, path("legs.yaml")},
+                                     {6.0, path("cameras.yaml")},
+                                     {8.6, path("first.yaml")}},
+                                    11.0);
+  EXPECT_EQ(result.end, lab::RunEnd::time) << told_ << printed_;
+  EXPECT_EQ(result.reloads, 4) << told_ << printed_;
+  EXPECT_EQ(names(), (std::vector<std::string>{"cameras", "legs", "cameras", "first"}));
+  expect_replay(4);
+}
+
 TEST_F(Reload, OfABrokenFileIsRefusedInTheWordsOfCheck) {
   write("broken.yaml",
         "base: first.yaml\nmachine: {initial: setp}\ngains: {single: {swing: {kp: 4 N}}}\n");

@@ -1,5 +1,6 @@
 // What the loop does when something is wrong: each fault is counted once when it appears, and what
 // is written to the hardware stays finite.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -230,6 +231,64 @@ TEST(Faults, ASafeStopEntersTheSafeStateAndStopsTheHardware) {
   EXPECT_EQ(rig.state(), "limp");
   EXPECT_GT(std::abs(rig.loop->commands().tau[0]), 0.0);
   EXPECT_EQ(rig.loop->sensors().tau[0], 0.0);  // commanded, but no torque acts any more
+}
+
+// Without a `safe` state there is nowhere to go.
+TEST(Faults, ASafeStateThatABehaviorDoesNotHaveIsAStop) {
+  StubRig rig(R"(
+behavior: 1
+robot: hume
+machine:
+  tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}
+)");
+  rig.hardware->spoil = [](hal::Sensors& s, std::int64_t tick) { s.imu_fresh = tick < 5; };
+  rig.loop->start();
+  for (int k = 0; k < 5 + 30; ++k) rig.loop->tick();  // limits.imu_age is 20 ms, 30 ticks
+  EXPECT_EQ(rig.loop->state(), engine::LoopState::running);
+  rig.loop->tick();
+  EXPECT_EQ(rig.loop->state(), engine::LoopState::stopped);
+  EXPECT_EQ(rig.loop->ended_by(), Fault::imu_stale);
+}
+
+TEST(Faults, WithoutAStateAtTheStartThereIsNoStart) {
+  StubRig rig(R"(
+behavior: 1
+robot: hume
+machine:
+  tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}
+)");
+  rig.hardware->spoil = [](hal::Sensors& s, std::int64_t) { s.has_truth = false; };
+  EXPECT_THROW(rig.loop->start(), std::runtime_error);
+}
+
+// A behavior that marks no step may hold a foot up for as long as it likes, and one that relies on
+// no foot at all hangs on something.
+TEST(Faults, AFootInTheAirIsASwingOnlyOfABehaviorThatStepsOnAnother) {
+  struct Case {
+    const char* mark;
+    const char* contacts;
+    bool swings;
+  };
+  for (const auto& [mark, contacts, swings] :
+       {Case{"pose", "[right_foot]", false}, Case{"step", "[right_foot]", true},
+        Case{"step", "[]", false}}) {
+    StubRig rig(fmt::format(R"(
+behavior: 1
+robot: hume
+machine:
+  tasks: {{rest: {{type: joint_damping, priority: 1, gains: {{kd: 5}}}}}}
+  states: {{stand: {{contacts: {}, on_entry: [{{mark: {}}}]}}}}
+)",
+                            contacts, mark),
+                1e6, [](int contact, double) { return contact == 0; });
+    rig.loop->start();
+    for (int k = 0; k < 1500; ++k) rig.loop->tick();  // 1 s
+    EXPECT_EQ(rig.faults(Fault::swing_too_long), 0);
+    rig.loop->tick();
+    EXPECT_EQ(rig.faults(Fault::swing_too_long), swings ? 1 : 0);
+    EXPECT_EQ(rig.loop->state(), swings ? engine::LoopState::fallen : engine::LoopState::running);
+    EXPECT_EQ(rig.loop->last_place(Fault::swing_too_long).joint, swings ? 1 : -1);
+  }
 }
 
 }  // namespace
