@@ -82,7 +82,12 @@ Section steps_section(const Log& log, const RunSteps& steps) {
       "the table.",
       steps.truth ? "contacts, feet and base as the simulator knows them" : "as estimated");
   if (end_of(log) == "fall") {
-    section.html = "<pre>" + escape_html(chain_text(steps.rows)) + "</pre>";
+    // One item a line: the page does not keep line ends.
+    std::string text = escape_html(chain_text(steps.rows));
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
+      text.replace(at, 1, at + 1 == text.size() ? "" : "</li><li>");
+    }
+    section.html = "<ul><li>" + text + "</li></ul>";
   }
   for (const StepPlot& of : step_plots()) {
     TimePlot plot{of.id, of.title, std::string(column_of(of.curves[0].value).unit), {}, false};
