@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "lab/report/sections.h"
 #include "lab/steps/fall_chain.h"
@@ -82,7 +83,12 @@ Section steps_section(const Log& log, const RunSteps& steps) {
       "the table.",
       steps.truth ? "contacts, feet and base as the simulator knows them" : "as estimated");
   if (end_of(log) == "fall") {
-    section.html = "<pre>" + escape_html(chain_text(steps.rows)) + "</pre>";
+    // One item a line: escaping does not keep line ends.
+    std::istringstream text(chain_text(steps.rows));
+    for (std::string line; std::getline(text, line);) {
+      section.html += "<li>" + escape_html(line) + "</li>";
+    }
+    section.html = "<ul>" + section.html + "</ul>";
   }
   for (const StepPlot& of : step_plots()) {
     TimePlot plot{of.id, of.title, std::string(column_of(of.curves[0].value).unit), {}, false};
