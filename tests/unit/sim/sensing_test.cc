@@ -109,7 +109,8 @@ TEST_F(Sensing, LateMarkersAreWhereTheirSitesWereAtTheExposure) {
   int frames = 0;
   for (std::size_t k = 0; k < late.size(); ++k) {
     if (!late[k].mocap_fresh) continue;
-    const double exposure = static_cast<double>(k) - late[k].mocap_age / period;  // ticks
+    // Ticks; before the start the base was where it starts.
+    const double exposure = std::max(static_cast<double>(k) - late[k].mocap_age / period, 0.0);
     const auto before = static_cast<std::size_t>(exposure + 1e-9);
     const double part = exposure - static_cast<double>(before);
     for (std::size_t i = 0; i < 3; ++i) {
