@@ -94,7 +94,8 @@ void Footholds::move(mjModel_& model, Foothold& foothold, double height) const n
 // Of the plane, and of the terrain below or beside the ball.
 bool Footholds::is_clear(const mjModel_& model, const mjData_& data, int ball) const noexcept {
   const double* p = data.geom_xpos + 3 * ball;
-  const double margin = model.geom_size[3 * ball] + 2.0 * error_;
+  constexpr double kGap = 1e-3;  // m
+  const double margin = model.geom_size[3 * ball] + error_ + kGap;
   double top = 0.0;
   for (const TerrainBox& box : terrain_) {
     if (std::abs(p[0] - box.at[0]) < 0.5 * box.size[0] + margin &&

@@ -18,7 +18,7 @@ namespace footfall::sim {
 // The name of a copy in the scene: `piece` 0 is the plane, 1 the first piece of terrain.
 std::string foothold_name(std::size_t contact, std::size_t piece);
 
-// A foot's ground moves while its ball is clear of it by more than twice the largest error, once
+// A foot's ground moves while its ball is clear of the highest that it can be, once
 // between two touchdowns: it never meets the ball by moving. At the start the errors are 0.
 class Footholds {
  public:

@@ -12,6 +12,7 @@
 
 #include "apps/shared/commands.h"
 #include "apps/shared/log_argument.h"
+#include "apps/shared/time_option.h"
 #include "behaviors/language/language.h"
 #include "core/diagnostics/did_you_mean.h"
 #include "core/text/json_text.h"
@@ -28,9 +29,20 @@ namespace {
 struct ReplayArguments {
   std::string log, behavior, estimator;
   std::vector<std::string> set;
-  double from = 2.0;
+  std::string from = "2s";
   bool verify = false, json = false;
 };
+
+double from_of(const ReplayArguments& arguments) {
+  double from = 0.0;
+  try {
+    from = read_time(arguments.from, "--from");
+  } catch (const std::runtime_error& problem) {
+    throw InputError(problem.what());
+  }
+  if (from >= 0.0) return from;
+  throw InputError(fmt::format("--from: error: expected 0 s or later, got '{}'", arguments.from));
+}
 
 void print_lines(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("  {}\n", line);
@@ -77,11 +89,14 @@ int run_estimator(const ReplayArguments& arguments) {
                                  fmt::join(known, ", "), arguments.estimator,
                                  core::did_you_mean(arguments.estimator, known)));
   }
-  lab::EstimatorTrial trial{arguments.estimator, {}, arguments.from};
+  lab::EstimatorTrial trial{arguments.estimator, {}, from_of(arguments)};
   for (const std::string& item : arguments.set) {
     const std::size_t sign = item.find('=');
     if (sign == std::string::npos || sign == 0) {
       throw InputError(fmt::format("--set {}: error: expected estimator.NAME=VALUE", item));
+    }
+    if (item.substr(0, sign) == "estimator.type") {
+      throw InputError(fmt::format("--set {}: error: --estimator names the type", item));
     }
     trial.set.emplace_back(item.substr(0, sign), item.substr(sign + 1));
   }
@@ -149,11 +164,13 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       "--estimator", arguments->estimator,
       "Runs this estimator alone over the logged sensors; prints its errors from the logged truth");
   command->add_option("--set", arguments->set, "estimator.NAME=VALUE")->needs(estimator);
-  command->add_option("--from", arguments->from, "Errors count from this time on, s")
+  command->add_option("--from", arguments->from, "Errors count from this time on, e.g. 2s")
       ->needs(estimator)
-      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "The errors as one JSON object")->needs(estimator);
+  estimator->check([](const std::string& name) {
+    return name.empty() ? std::string("expected the name of an estimator") : std::string();
+  });
   estimator->excludes("--verify")->excludes("--behavior");
   command->footer(
       "Example: footfall replay out/run --verify\n"

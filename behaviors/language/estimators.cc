@@ -71,6 +71,9 @@ constexpr auto kMotionCapture = measured_and(std::array{
         "acceleration_gain", kRate, 1.0, 0.0, 20.0,
         "integral of the velocity's corrections: takes out the accelerometer's error; "
         "0: none"},
+    EstimatorParameter{"regain_after", kTime, 0.5, 0.05, 1e6,
+                       "after a longer time without a frame the next one's place and orientation "
+                       "are taken as they are, instead of corrected towards"},
 });
 constexpr double kDegree = 0.017453292519943295;
 constexpr auto kContactKalman = measured_and(std::array{

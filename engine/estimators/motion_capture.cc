@@ -37,6 +37,7 @@ int MotionCapture::collect_markers(const hal::Sensors& sensors) noexcept {
 
 bool MotionCapture::start(const EstimatorInput& input) noexcept {
   if (!input.sensors.mocap_fresh) return false;
+  if (!(input.sensors.mocap_age <= input.parameters[mocap::oldest_frame])) return false;
   const int count = collect_markers(input.sensors);
   const std::span<const MarkerPair> seen = std::span(pairs_).first(at(count));
   Matrix3d R;
@@ -94,6 +95,20 @@ void MotionCapture::correct_place(std::span<const double> parameters, const Vect
   memory_.acceleration += parameters[mocap::acceleration_gain] * velocity;
 }
 
+// After a long gap the place is wrong by what the legs slipped, or by metres where none touched: to
+// correct it through the gains would make a velocity of it. The velocity turns with the heading.
+bool MotionCapture::regain(std::span<const MarkerPair> seen, const Motion& motion) noexcept {
+  Memory& m = memory_;
+  Matrix3d R;
+  if (!fit_rotation(seen, R)) return false;
+  const Matrix3d now = R * motion.turn;
+  m.velocity = now * m.R.transpose() * m.velocity;
+  m.position = fit_affine(seen, R, 0.0).origin(R) + motion.shift;
+  m.R = now;
+  m.frame_time = 0.0;
+  return true;
+}
+
 void MotionCapture::correct_by_frame(const EstimatorInput& input,
                                      EstimateQuality& quality) noexcept {
   Memory& m = memory_;
@@ -108,6 +123,8 @@ void MotionCapture::correct_by_frame(const EstimatorInput& input,
   if (m.markers == 0) return;
   const std::span<const MarkerPair> seen = std::span(pairs_).first(at(m.markers));
 
+  const bool lost = m.frame_time > p[mocap::regain_after];
+  if (lost && regain(seen, motion)) return;
   // At exposure: as predicted, and as the frame corrects it.
   const Matrix3d predicted = m.R * motion.turn.transpose();
   quality.marker_innovation = marker_residual(seen, predicted, m.position - motion.shift);
@@ -169,6 +186,9 @@ void MotionCapture::take_over(const Estimator& old, const Estimate& last) noexce
   rate_ = vector_of(last.state.w_WB_B);
   memory_.position = vector_of(last.state.p_WB);
   memory_.velocity = vector_of(last.state.v_WB) + arm_velocity();
+  // The other's world may be another one: the first frame says where this one is.
+  constexpr double kLongAgo = 1e5;  // s
+  memory_.frame_time = kLongAgo;
   memory_.started = true;
 }
 

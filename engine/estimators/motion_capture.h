@@ -21,6 +21,7 @@ enum : std::size_t {
   velocity_gain,
   leg_velocity_time,
   acceleration_gain,
+  regain_after,
   count,
 };
 }  // namespace motion_capture_parameter
@@ -54,6 +55,7 @@ class MotionCapture final : public Estimator {
   void predict() noexcept;
   void correct_by_legs(std::span<const double> parameters, EstimateQuality& quality) noexcept;
   void correct_by_frame(const EstimatorInput& input, EstimateQuality& quality) noexcept;
+  bool regain(std::span<const MarkerPair> seen, const Motion& motion) noexcept;
   void correct_place(std::span<const double> parameters, const Vector3d& error,
                      double interval) noexcept;
   void write(Estimate& estimate) const noexcept;

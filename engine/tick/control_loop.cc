@@ -86,6 +86,7 @@ void ControlLoop::compute() noexcept {
   faults_.begin_tick();
   const SensorFindings sensed = watch_.check(sensors_, fresh_);
   const bool estimated = estimate_state(watch_.usable());
+  watch_.used(estimate_.quality.markers);
   model_.update(estimate_.state);
   writer_.write_measured(time(), model_, sensors_, estimate_);
   // After the estimate, as a replay writes what came from outside: there, too, it acts on the

@@ -49,9 +49,14 @@ SensorFindings SensorWatch::check(const hal::Sensors& sensors, bool fresh) noexc
     spoiled_ = needs_state_ && repair(sensors);
   }
   usable_ = spoiled_ ? &repaired_ : &sensors;
+  frame_ = false;
   if (fresh) {
     watch_imu(*usable_);
     watch_mocap(*usable_);
+  } else {
+    ++imu_ticks_;
+    ++mocap_ticks_;
+    hide_frame(*usable_);
   }
   findings.infinite = spoiled_;
   findings.imu_stale = imu_ticks_ > imu_limit_;
@@ -77,7 +82,9 @@ void SensorWatch::watch_imu(const hal::Sensors& sensors) noexcept {
   if (!sensors.imu_fresh) return;
   const bool moved = imu_known_ && !(same(sensors.gyro, last_.gyro) &&
                                      same(sensors.accelerometer, last_.accelerometer));
-  imu_moved_ = imu_moved_ || moved;
+  // Of a real IMU, or one with errors, two samples never agree to the last bit.
+  const bool perfect = sensors.has_truth && !sensors.sensor_truth;
+  imu_moved_ = imu_moved_ || moved || (imu_known_ && !perfect);
   if (moved || !imu_moved_ || !needs_imu_) imu_ticks_ = 0;
   last_.gyro = sensors.gyro;
   last_.accelerometer = sensors.accelerometer;
@@ -101,7 +108,19 @@ void SensorWatch::watch_mocap(const hal::Sensors& sensors) noexcept {
   }
   mocap_moved_ = mocap_moved_ || moved;
   mocap_known_ = mocap_known_ || seen > 0;
-  if (seen >= kFewestMarkers && (moved || !mocap_moved_)) mocap_ticks_ = 0;
+  frame_ = seen >= kFewestMarkers && (moved || !mocap_moved_);
+  if (seen > 0 && mocap_moved_ && !moved) hide_frame(sensors);
+}
+
+// A frame that is the last one once more says nothing new: the estimator does not get it.
+void SensorWatch::hide_frame(const hal::Sensors& sensors) noexcept {
+  if (usable_ != &repaired_) repaired_ = sensors;
+  repaired_.mocap_fresh = false;
+  usable_ = &repaired_;
+}
+
+void SensorWatch::used(int markers) noexcept {
+  if (frame_ && markers > 0) mocap_ticks_ = 0;
 }
 
 // Whether there was anything to repair. What is finite becomes the last good value.

@@ -19,11 +19,11 @@ struct SensorFindings {
 // Judged for every estimator: no new IMU data, no new frame, for longer than the robot's limits;
 // the clock. Only for an estimator that needs the sensor: data that stay the same to the last bit
 // although they are said to be new (frozen: a resolution hides no motion for that long), frames
-// with fewer than three markers, values that are not finite. Frozen data and a clock that stands
-// still are told only of sensors that have moved before: a backend may have no clock, and a perfect
-// IMU at rest never changes.
+// with fewer than three markers or that it does not use (too old), values that are not finite. A
+// clock that stands still is told only if it has moved before: a backend may have none. Likewise a
+// perfect IMU and motion capture: at rest they never change.
 //
-// A read that brings nothing at all is another fault, sensor.stale: no age grows in it.
+// A read that brings nothing at all is another fault, too, sensor.stale: the ages grow in it.
 class SensorWatch {
  public:
   SensorWatch(const behaviors::EstimatorSpec& spec, const model::RobotDescription& robot);
@@ -31,8 +31,12 @@ class SensorWatch {
   // Once a tick, after the read. `fresh`: the read brought something new.
   SensorFindings check(const hal::Sensors& sensors, bool fresh) noexcept;
   // What the estimator gets: the sensors as they are or, while a value that it uses is not finite,
-  // a copy in which the last good one stands and its group is not new (a marker: not seen).
+  // a copy in which the last good one stands and its group is not new (a marker: not seen), and
+  // while motion capture repeats a frame, or a read brought nothing, one without a frame.
   const hal::Sensors& usable() const noexcept { return *usable_; }
+
+  // After the estimate: how many markers the estimator used of this tick's frame, if there is one.
+  void used(int markers) noexcept;
 
   // Goes on from the watch of another loop on the same robot.
   void take_over(const SensorWatch& old) noexcept;
@@ -41,6 +45,7 @@ class SensorWatch {
   void watch_clock(const hal::Sensors& sensors, SensorFindings& findings) noexcept;
   void watch_imu(const hal::Sensors& sensors) noexcept;
   void watch_mocap(const hal::Sensors& sensors) noexcept;
+  void hide_frame(const hal::Sensors& sensors) noexcept;
   bool repair(const hal::Sensors& sensors) noexcept;
 
   bool needs_state_, needs_imu_, needs_mocap_, needs_torque_;
@@ -53,6 +58,7 @@ class SensorWatch {
   hal::Sensors last_;      // fresh ones, all values finite: of each group the last good ones
   hal::Sensors repaired_;  // what usable() gives while values are not finite
   bool spoiled_ = false;   // there are such values
+  bool frame_ = false;     // of this tick: new, with enough markers
   const hal::Sensors* usable_ = &repaired_;
 };
 

@@ -212,6 +212,13 @@ class EstimatorRun {
   }
 
   void finish() {
+    const double end = static_cast<double>(log_.inputs.first_tick + log_.inputs.ticks() - 1) /
+                       behavior_.robot.rate_hz();
+    if (figures_.ticks == 0 && end < figures_.from) {
+      throw std::runtime_error(
+          fmt::format("the log '{}' ends at {:.3f} s: nothing to compare from {:g} s on", log_.path,
+                      end, figures_.from));
+    }
     if (figures_.ticks == 0) {
       throw std::runtime_error(
           fmt::format("the log '{}' has no truth to compare with from {:g} s on: only a simulator "

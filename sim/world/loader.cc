@@ -86,7 +86,7 @@ class WorldLoader {
     core::check_keys(node, kGroundKeys, diagnostics_);
     constexpr double kLargestFriction = 10.0;
     read_bounded(node, "friction", core::kNone, 0.0, kLargestFriction, world_.friction);
-    constexpr double kLargestError = 0.1;  // m
+    constexpr double kLargestError = 0.02;  // m; a foot must swing clear of it
     read_bounded(node, "height_error", core::kLength, 0.0, kLargestError, world_.height_error);
     const YamlNode* const terrain = node.find("terrain");
     if (terrain == nullptr ||

@@ -139,6 +139,7 @@ TEST(MotionCapture, ItsTableAndItsParametersAgree) {
   EXPECT_EQ(rows[parameter::velocity_gain].name, "velocity_gain");
   EXPECT_EQ(rows[parameter::leg_velocity_time].name, "leg_velocity_time");
   EXPECT_EQ(rows[parameter::acceleration_gain].name, "acceleration_gain");
+  EXPECT_EQ(rows[parameter::regain_after].name, "regain_after");
 }
 
 // E17: the turn since exposure is the product of exp([w]x dt), so that old frames correct nothing
@@ -157,6 +158,7 @@ TEST(MotionCapture, PerfectSensorsGiveTheMotionExactly) {
 TEST(MotionCapture, AnOrientationThatIsOffComesBackByTheGainOfAFrame) {
   MocapFlight flight;
   flight.parameters[parameter::gyro_bias_gain] = 0.0;
+  flight.parameters[parameter::regain_after] = 1e6;  // never
   flight.tick();
   engine::Estimate wrong = flight.estimate;
   const Matrix3d off = engine::rotation_exp(Vector3d(0.0, 0.0, 0.01));
@@ -221,6 +223,26 @@ TEST(MotionCapture, WithoutMarkersItGoesOnByTheImu) {
   EXPECT_LT(flight.velocity_error(), 1e-9);
 }
 
+// A second without frames, in which the gyro's bias and no feet let it drift: the first frame puts
+// it right at once, and no velocity is made of the distance.
+TEST(MotionCapture, AfterALongGapTheFirstFrameIsTakenAsItIs) {
+  MocapFlight flight;
+  for (int k = 0; k < 60; ++k) flight.tick();
+  flight.gyro_bias = {0.05, -0.05, 0.05};
+  flight.lost = true;
+  for (int k = 0; k < 1500; ++k) flight.tick();
+  EXPECT_GT(flight.attitude_error(), 0.05);
+  const double place = flight.position_error(), velocity = flight.velocity_error();
+  EXPECT_GT(place, 0.05);
+  flight.lost = false;
+  do flight.tick();
+  while (!flight.sensors.mocap_fresh);
+  // The bias over a frame's age, and the drifting velocity over it.
+  const double age = flight.sensors.mocap_age;
+  EXPECT_LT(flight.attitude_error(), 0.1 * age);
+  EXPECT_LT(flight.position_error(), (velocity + 0.1) * age);
+  EXPECT_LT(flight.velocity_error(), velocity + 0.1);
+}
 TEST(MotionCapture, ANumberThatIsNoneLeavesTheEstimateAlone) {
   MocapFlight flight;
   for (int i = 0; i < 30; ++i) flight.tick();

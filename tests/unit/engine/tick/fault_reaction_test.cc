@@ -227,11 +227,13 @@ class FaultReaction : public testing::TestWithParam<Case> {
     const std::string swing = fault == Fault::swing_too_long  ? "10 ms"
                               : fault == Fault::swing_contact ? fmt::format("{} ms", kLoadedSwing)
                                                               : "1 s";
+    // While reads bring nothing the IMU's data age, too.
+    const char* const age = fault == Fault::sensor_stale ? "1 s" : "4 ms";
     write("robot.yaml", fmt::format("robot: 1\nbase: {}/robots/hume/robot.yaml\n"
-                                    "limits: {{swing: {}, overruns: {}, imu_age: 4 ms, "
+                                    "limits: {{swing: {}, overruns: {}, imu_age: {}, "
                                     "mocap_age: 8 ms}}\nfaults: {{{}: {}}}\n",
-                                    fs::absolute(FOOTFALL_SOURCE_DIR).string(), swing, kLate, name,
-                                    kReactionNames[static_cast<std::size_t>(reaction)]));
+                                    fs::absolute(FOOTFALL_SOURCE_DIR).string(), swing, kLate, age,
+                                    name, kReactionNames[static_cast<std::size_t>(reaction)]));
     write("slow.lua", kSlowScript);
     write("behavior.yaml", behavior_text(path("robot.yaml"), name));
     core::Diagnostics diagnostics;

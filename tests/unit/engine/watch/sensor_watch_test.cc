@@ -47,7 +47,9 @@ class SensorWatchTest : public testing::Test {
     sensors_.imu_fresh = sensors_.mocap_fresh = true;
     sensors_.q = {};
     if (change) change(sensors_);
-    return watch_->check(sensors_, fresh);
+    const SensorFindings found = watch_->check(sensors_, fresh);
+    watch_->used(used_);
+    return found;
   }
   // Ticks with this change until the finding, at most 100.
   int ticks_until(bool SensorFindings::*finding, const std::function<void(hal::Sensors&)>& change) {
@@ -61,6 +63,7 @@ class SensorWatchTest : public testing::Test {
   std::optional<SensorWatch> watch_;
   hal::Sensors sensors_;
   std::int64_t tick_ = 0;
+  int used_ = 4;  // markers by the estimator
 };
 
 TEST_F(SensorWatchTest, DataThatAreNotNewAreStaleBeyondTheLimitForEveryEstimator) {
@@ -73,6 +76,7 @@ TEST_F(SensorWatchTest, DataThatAreNotNewAreStaleBeyondTheLimitForEveryEstimator
     EXPECT_EQ(
         ticks_until(&SensorFindings::mocap_stale, [](hal::Sensors& s) { s.mocap_fresh = false; }),
         11);
+    tick();  // in which the estimator uses a frame again
     const SensorFindings after = tick();
     EXPECT_FALSE(after.imu_stale || after.mocap_stale || after.clock || after.infinite);
   }
@@ -95,13 +99,37 @@ TEST_F(SensorWatchTest, AFrozenImuIsStaleWhereItIsNeeded) {
   EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), -1);
 }
 
-TEST_F(SensorWatchTest, AnImuThatHasNeverMovedIsNotFrozen) {
+// Perfect ones of a simulator at rest never change; a real one that does not is dead.
+TEST_F(SensorWatchTest, AnImuThatHasNeverMovedIsFrozenUnlessItIsPerfect) {
+  const auto rest = [](hal::Sensors& s) { s.gyro = {0.0, 0.0, 0.0}; };
   watch(EstimatorType::contact_kalman);
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale,
-                        [](hal::Sensors& s) {
-                          s.gyro = {0.0, 0.0, 0.0};
-                        }),
-            -1);
+  sensors_.has_truth = true;
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), -1);
+  sensors_.sensor_truth = true;
+  watch(EstimatorType::contact_kalman);
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), 7);  // the first one is new
+  sensors_.has_truth = sensors_.sensor_truth = false;
+  watch(EstimatorType::contact_kalman);
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), 7);
+}
+
+// Too old for it, say.
+TEST_F(SensorWatchTest, FramesThatTheEstimatorDoesNotUseAreStale) {
+  watch(EstimatorType::motion_capture);
+  used_ = 0;
+  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, nullptr), 11);
+}
+
+TEST_F(SensorWatchTest, TheEstimatorDoesNotGetAFrameTwice) {
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  EXPECT_TRUE(watch_->usable().mocap_fresh);
+  tick([](hal::Sensors& s) {
+    for (std::size_t m = 0; m < 4; ++m) s.marker[m] = {2.0, 0.1 * static_cast<double>(m), 1.0};
+  });
+  EXPECT_FALSE(watch_->usable().mocap_fresh);
+  tick();
+  EXPECT_TRUE(watch_->usable().mocap_fresh);
 }
 
 TEST_F(SensorWatchTest, AGyroscopeAtRestIsNotFrozenWhileTheAccelerometerMoves) {
@@ -130,12 +158,14 @@ TEST_F(SensorWatchTest, FramesThatRepeatOrShowTooFewMarkersAreStaleWhereTheyAreN
   EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, hide), -1);
 }
 
-TEST_F(SensorWatchTest, AReadThatBringsNothingAgesNothing) {
+TEST_F(SensorWatchTest, AReadThatBringsNothingAgesWhatWasThere) {
   watch(EstimatorType::motion_capture);
   tick(), tick();
-  for (int k = 0; k < 100; ++k) {
-    const SensorFindings found = tick([](hal::Sensors& s) { s.imu_fresh = false; }, false);
-    EXPECT_FALSE(found.imu_stale || found.mocap_stale || found.clock);
+  for (int k = 1; k <= 20; ++k) {
+    const SensorFindings found = tick(nullptr, false);
+    EXPECT_EQ(found.imu_stale, k > 5);
+    EXPECT_EQ(found.mocap_stale, k > 10);
+    EXPECT_FALSE(found.clock);
   }
 }
 
