@@ -1,5 +1,5 @@
 // State without motion capture, from IMU, joints and contacts: an invariant Kalman filter
-// (invariant_filter.h) in the frame where the robot started. Heading and place drift; their
+// (parts/invariant_filter.h) in the frame where the robot started. Heading and place drift; their
 // standard deviations say how far.
 #pragma once
 

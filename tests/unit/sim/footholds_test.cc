@@ -79,7 +79,7 @@ TEST_F(FootholdsTest, HeightsAreUniformAndChangeInTheAirOnly) {
     ASSERT_EQ(height(0), left);
     put(-2.0 * kError);  // both feet touch
     ASSERT_EQ(height(0), left);
-    put(1.5 * kError);  // not clear
+    put(0.5 * kError);  // not clear
     ASSERT_EQ(height(0), left);
     sum += left;
     squares += left * left;
