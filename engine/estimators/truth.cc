@@ -46,4 +46,15 @@ Truth truth_of(const hal::Sensors& sensors, const model::ControlModel& model) no
   return truth;
 }
 
+model::State true_state(const hal::Sensors& sensors) noexcept {
+  model::State state;
+  state.p_WB = sensors.p_WB;
+  state.q_WB = sensors.q_WB;
+  state.v_WB = sensors.v_WB;
+  state.w_WB_B = sensors.w_WB_B;
+  state.q = sensors.sensor_truth ? sensors.true_q : sensors.q;
+  state.qd = sensors.sensor_truth ? sensors.true_qd : sensors.qd;
+  return state;
+}
+
 }  // namespace footfall::engine

@@ -112,18 +112,6 @@ double angle_between(const std::array<double, 4>& a, const std::array<double, 4>
   return 2.0 * std::atan2(std::sqrt(cross), std::abs(dot));
 }
 
-// The truth as a state of the control model.
-model::State true_state(const hal::Sensors& sensors) {
-  model::State state;
-  state.p_WB = sensors.p_WB;
-  state.q_WB = sensors.q_WB;
-  state.v_WB = sensors.v_WB;
-  state.w_WB_B = sensors.w_WB_B;
-  state.q = sensors.sensor_truth ? sensors.true_q : sensors.q;
-  state.qd = sensors.sensor_truth ? sensors.true_qd : sensors.qd;
-  return state;
-}
-
 // One run of the estimator.
 class EstimatorRun {
  public:
@@ -187,7 +175,7 @@ class EstimatorRun {
     const auto rpy = engine::rpy_of(state.q_WB), true_rpy = engine::rpy_of(sensors_.q_WB);
     std::array<double, 3> com_velocity = sensors_.true_com_velocity;
     if (!sensors_.sensor_truth) {
-      truth_.update(true_state(sensors_));
+      truth_.update(engine::true_state(sensors_));
       com_velocity = truth_.com().velocity;
     }
     const bool planned = plans_.contains(tick);
@@ -202,7 +190,7 @@ class EstimatorRun {
     figures_.rotation.add(angle_between(state.q_WB, sensors_.q_WB));
     engine::ErrorCovariance covariance;
     if (estimator_->covariance(covariance)) {
-      figures_.nees.add(normalised_error(state, true_state(sensors_), covariance));
+      figures_.nees.add(normalised_error(state, engine::true_state(sensors_), covariance));
     }
     const double heading = estimate_.quality.attitude[2];
     if (figures_.ticks == 1) figures_.heading_deviation[0] = heading;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "engine/estimators/truth.h"
 #include "lab/figures/log_figures.h"
 #include "lab/log/attached_files.h"
 #include "lab/run/log_setup.h"
@@ -46,7 +47,7 @@ class LogSampler {
     StepSample out;
     out.time = static_cast<double>(tick) * 1e3 / static_cast<double>(log_.rate_mhz);
     truth_ = truth_ || sensors_.has_truth;
-    model_.update(sensors_.has_truth ? true_state() : signals_.state(row_));
+    model_.update(sensors_.has_truth ? engine::true_state(sensors_) : signals_.state(row_));
     body(out);
     feet(out);
     signals_.plan(row_, out);
@@ -60,17 +61,6 @@ class LogSampler {
   bool truth() const { return truth_; }
 
  private:
-  model::State true_state() const {
-    model::State state;
-    state.p_WB = sensors_.p_WB;
-    state.q_WB = sensors_.q_WB;
-    state.v_WB = sensors_.v_WB;
-    state.w_WB_B = sensors_.w_WB_B;
-    state.q = sensors_.sensor_truth ? sensors_.true_q : sensors_.q;
-    state.qd = sensors_.sensor_truth ? sensors_.true_qd : sensors_.qd;
-    return state;
-  }
-
   void body(StepSample& out) {
     const auto& rpy = model_.rpy();
     const auto reference = signals_.attitude(row_);

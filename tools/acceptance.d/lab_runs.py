@@ -21,3 +21,9 @@ def counted(steps, cap):
     text = f"{len(steps) - len(low)} of {len(steps)} at {cap} (median {statistics.median(steps.values()):.0f}, " \
            f"worst {min(steps.values())}"
     return text + (f"; fell {', '.join(f'{seed}: {s}' for seed, s in low.items())})" if low else ")")
+
+
+def reached(label, *options):
+    """How many of 40 seeds make 300 steps on balance_lab with these options, and the figure."""
+    steps = steps_of("balance_lab", range(100, 140), 300, *options)
+    return sum(s >= 300 for s in steps.values()), f"{label}: {counted(steps, 300)}"

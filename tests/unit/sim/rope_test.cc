@@ -2,12 +2,8 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
-#include <fstream>
-
-#include "core/diagnostics/diagnostics.h"
-#include "sim/mujoco_backend.h"
 #include "sim/springs.h"
-#include "sim/springs_check.h"
+#include "tests/unit/sim/brick.h"
 
 namespace footfall::sim {
 namespace {
@@ -15,48 +11,7 @@ namespace {
 constexpr double kRopedMass = 2.0;             // kg
 constexpr double kPhysicsStep = 1.0 / 3000.0;  // s
 
-class Ropes : public testing::Test {
- protected:
-  Ropes() {
-    robot_.name = "brick";
-    robot_.path = "brick.yaml";
-    robot_.floating_base = "brick";
-    robot_.rate_mhz = 1'500'000;
-    robot_.model_path = testing::TempDir() + "/footfall_roped_brick.xml";
-    std::ofstream(robot_.model_path)
-        << "<mujoco><worldbody><body name=\"brick\" pos=\"0 0 10\"><freejoint/>"
-           "<inertial pos=\"0 0 0\" mass=\"2\" diaginertia=\"0.01 0.02 0.025\"/>"
-           "</body></worldbody></mujoco>";
-    world_.physics.steps_per_tick = 2;
-  }
-
-  model::BodySprings& aid(const std::string& name = "aid") {
-    model::BodySprings& out = world_.constraints.emplace_back();
-    out.name = name;
-    out.body.name = "brick";
-    return out;
-  }
-  void start() {
-    backend_ = std::make_unique<MujocoBackend>(robot_, world_);
-    backend_->start();
-  }
-  double position(int axis) const { return backend_->data()->qpos[axis]; }
-  double force(int axis) const { return backend_->data()->xfrc_applied[6 + axis]; }
-  void ticks(int count) {
-    for (int k = 0; k < count; ++k) backend_->write({});
-  }
-  std::string refusals() {
-    core::Diagnostics found;
-    check_springs(world_, {}, robot_, found);
-    std::string text;
-    for (const core::Diagnostic& item : found.all()) text += item.text + "\n";
-    return text;
-  }
-
-  model::RobotDescription robot_;
-  WorldDescription world_;
-  std::unique_ptr<MujocoBackend> backend_;
-};
+using Ropes = Brick;
 
 TEST_F(Ropes, ARopePullsOnlyWhileItIsTautAlongItselfAndAtItsPoint) {
   const ActiveRope rope = {true, {}, {}, 2.0, 1000.0, 50.0};

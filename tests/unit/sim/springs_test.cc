@@ -13,6 +13,7 @@
 #include "sim/springs_check.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/hume.h"
+#include "tests/unit/sim/brick.h"
 
 namespace footfall::sim {
 namespace {
@@ -22,53 +23,14 @@ constexpr double kGravity = 9.81;       // m/s^2
 constexpr double kStep = 1.0 / 3000.0;  // s
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
-class Springs : public testing::Test {
+class Springs : public Brick {
  protected:
-  Springs() {
-    robot_.name = "brick";
-    robot_.path = "brick.yaml";
-    robot_.floating_base = "brick";
-    robot_.rate_mhz = 1'500'000;
-    robot_.model_path = testing::TempDir() + "/footfall_brick.xml";
-    std::ofstream(robot_.model_path)
-        << "<mujoco><worldbody><body name=\"brick\" pos=\"0 0 10\"><freejoint/>"
-           "<inertial pos=\"0 0 0\" mass=\"2\" diaginertia=\"0.01 0.02 0.025\"/>"
-           "</body></worldbody></mujoco>";
-    world_.physics.steps_per_tick = 2;
-  }
-
   model::AxisSpring spring(double stiffness, std::optional<double> damping = {}) {
     model::AxisSpring out;
     out.stiffness = stiffness;
     out.damping = damping;
     return out;
   }
-  model::BodySprings& aid(const std::string& name = "aid") {
-    model::BodySprings& out = world_.constraints.emplace_back();
-    out.name = name;
-    out.body.name = "brick";
-    return out;
-  }
-  void start() {
-    backend_ = std::make_unique<MujocoBackend>(robot_, world_);
-    backend_->start();
-  }
-  double position(int axis) const { return backend_->data()->qpos[axis]; }
-  double force(int axis) const { return backend_->data()->xfrc_applied[6 + axis]; }
-  void ticks(int count) {
-    for (int k = 0; k < count; ++k) backend_->write({});
-  }
-  std::string refusals(const std::vector<model::BodySprings>& holds = {}) {
-    core::Diagnostics found;
-    check_springs(world_, holds, robot_, found);
-    std::string text;
-    for (const core::Diagnostic& item : found.all()) text += item.text + "\n";
-    return text;
-  }
-
-  model::RobotDescription robot_;
-  WorldDescription world_;
-  std::unique_ptr<MujocoBackend> backend_;
 };
 
 TEST_F(Springs, AHungBodySagsByItsWeightOverTheStiffness) {

@@ -5,22 +5,16 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from lab_runs import counted, steps_of
+from lab_runs import reached
 
 from rows import WANT, finish
 
-
-def reached(speed):
-    steps = steps_of("balance_lab", range(100, 140), 300, "--goal-velocity", f"{speed},0")
-    return sum(s >= 300 for s in steps.values()), f"{speed} m/s: {counted(steps, 300)}"
-
-
-slow, text = reached(0.2)
-fast, more = reached(0.35)
+slow, text = reached("0.2 m/s", "--goal-velocity", "0.2,0")
+fast, more = reached("0.35 m/s", "--goal-velocity", "0.35,0")
 figures = [text, more]
 want = None
 if WANT:
-    fastest, more = reached(0.5)
+    fastest, more = reached("0.5 m/s", "--goal-velocity", "0.5,0")
     figures.append(more)
     want = fastest >= 36
 finish("; ".join(figures), slow >= 38 and fast >= 36, want)
