@@ -74,6 +74,9 @@ constexpr auto kMotionCapture = measured_and(std::array{
     EstimatorParameter{"regain_after", kTime, 0.5, 0.05, 1e6,
                        "after a longer time without a frame the next one's place and orientation "
                        "are taken as they are, instead of corrected towards"},
+    EstimatorParameter{"marker_gate", kLength, 0.03, 0.0, 10.0,
+                       "a marker farther than this from where the others put it is not used; 0: "
+                       "all are"},
 });
 constexpr double kDegree = 0.017453292519943295;
 constexpr auto kContactKalman = measured_and(std::array{
@@ -102,6 +105,9 @@ constexpr auto kContactKalman = measured_and(std::array{
                        "standard deviation at the start"},
     EstimatorParameter{"start_accelerometer_bias", kAcceleration, 0.03, 0.0, 10.0,
                        "standard deviation at the start"},
+    EstimatorParameter{"lost_after", kTime, 2.0, 0.0, 1e6,
+                       "after a longer time without a foot that keeps its place there is no "
+                       "estimate (`no_estimate`); 0: there always is"},
 });
 constexpr std::array kTypes = {
     EstimatorInfo{"true_state", "the simulator's own state", false, false, false, {}},

@@ -44,9 +44,9 @@ class ContactKalman final : public Estimator {
     bool started = false;
     bool spread = false;      // the covariance has its start
     double gyro_noise = 0.0;  // rad/s, for covariance()
-    // Of the filter's world, which follows the base, in the world of the estimate, horizontal: its
-    // place, m, and the variance that the way there has added, m^2.
-    Vector3d origin = Vector3d::Zero(), variance = Vector3d::Zero();
+    // Place of the filter's world, which follows the base, in that of the estimate, horizontal, m.
+    Vector3d origin = Vector3d::Zero();
+    double without_feet = 0.0;  // s since a foot last kept its place
   };
 
   void start(const EstimatorInput& input, const Estimate& measured) noexcept;
@@ -94,7 +94,7 @@ void ContactKalman<Feet>::spread(Parameters p) noexcept {
   const double tilt = p[kalman::start_attitude];
   f.set_deviation(Filter::kR, Vector3d(tilt, tilt, 0.0));
   f.set_deviation(Filter::kV, p[kalman::start_velocity] * one);
-  f.set_deviation(Filter::kP, Vector3d::Zero());
+  f.tie_place(f.p() - f.R() * measured_.imu());
   memory_.spread = true;
 }
 
@@ -112,7 +112,7 @@ void ContactKalman<Feet>::follow_feet(Parameters p) noexcept {
     if (anchor == nullptr) {
       if (f.has_foot(i)) f.drop_foot(i);
     } else if (!f.has_foot(i)) {
-      memory_.origin += f.anchor(memory_.variance);
+      memory_.origin += f.anchor();
       f.add_foot(i, h(*anchor), p[kalman::foot_noise]);
       if (p[kalman::ground_noise] > 0.0) f.correct_height(i, 0.0, p[kalman::ground_noise]);
     } else {
@@ -168,6 +168,8 @@ bool ContactKalman<Feet>::estimate(const EstimatorInput& input, Estimate& estima
     }
   }
   ++m.ticks;
+  m.without_feet = measured_.anchors().empty() ? m.without_feet + dt : 0.0;
+  if (p[kalman::lost_after] > 0.0 && m.without_feet > p[kalman::lost_after]) return false;
   write(next);
   estimate = next;
   return true;
@@ -192,27 +194,31 @@ void ContactKalman<Feet>::write(Estimate& estimate) const noexcept {
 }
 
 // Of x = v and p: x̂ - x = xi_x + xi_R x x; at the IMU, whose difference to the base's origin is
-// small beside it.
+// small beside it. The place's is that in the filter's world and that of the way there.
 template <int Feet>
 void ContactKalman<Feet>::place_deviation(EstimateQuality& quality) const noexcept {
   const Filter& f = memory_.filter;
   const auto& P = f.covariance();
-  const auto of = [&](int block, const Vector3d& x) {
-    const Matrix3d S = -skew(x);
+  const auto of = [&](int block, const Matrix3d& S) {
     const Matrix3d cross = P.template block<3, 3>(block, Filter::kR) * S.transpose();
     const Matrix3d turned = S * P.template block<3, 3>(Filter::kR, Filter::kR) * S.transpose();
-    const Vector3d variance =
-        P.diagonal().template segment<3>(block) + 2.0 * cross.diagonal() + turned.diagonal();
+    return Vector3d(P.diagonal().template segment<3>(block) + 2.0 * cross.diagonal() +
+                    turned.diagonal());
+  };
+  const auto deviation = [](const Vector3d& variance) {
     return array_of(variance.cwiseMax(0.0).cwiseSqrt());
   };
-  quality.attitude =
-      array_of(P.diagonal().template segment<3>(Filter::kR).cwiseMax(0.0).cwiseSqrt());
-  quality.velocity = of(Filter::kV, f.v());
-  quality.position = of(Filter::kP, f.p());
+  quality.attitude = deviation(P.diagonal().template segment<3>(Filter::kR));
+  quality.velocity = deviation(of(Filter::kV, -skew(f.v())));
+  const Matrix3d S = -skew(f.p());
+  Vector3d place = of(Filter::kP, S);
+  const auto& way = f.way_with_error();
   for (int k = 0; k < 2; ++k) {
-    double& deviation = quality.position[at(k)];
-    deviation = std::sqrt(deviation * deviation + memory_.variance[k]);
+    place[k] +=
+        f.way_covariance()(k, k) +
+        2.0 * (way(k, Filter::kP + k) + S.row(k).dot(way.row(k).template segment<3>(Filter::kR)));
   }
+  quality.position = deviation(place);
 }
 
 // By the map from the filter's error to that of the base's origin, with r from it to the IMU:
@@ -235,6 +241,11 @@ bool ContactKalman<Feet>::covariance(ErrorCovariance& covariance) const noexcept
   map.template block<3, 3>(6, Filter::kP).setIdentity();
   Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> out(covariance.data());
   out = map * f.covariance().template topLeftCorner<15, 15>() * map.transpose();
+  const Eigen::Matrix<double, 9, 2> way =
+      map * f.way_with_error().template leftCols<15>().transpose();
+  out.template middleCols<2>(6) += way;
+  out.template middleRows<2>(6) += way.transpose();
+  out.template block<2, 2>(6, 6) += f.way_covariance();
   const Matrix3d arm = memory_.gyro_noise * R * skew(r);
   out.template block<3, 3>(3, 3) += arm * arm.transpose();
   return true;

@@ -1,6 +1,7 @@
 // State without motion capture, from IMU, joints and contacts: an invariant Kalman filter
 // (parts/invariant_filter.h) in the frame where the robot started. Heading and place drift; their
-// standard deviations say how far.
+// standard deviations say how far. Without a foot that keeps its place for longer than `lost_after`
+// there is no estimate: accelerometer alone is wrong by metres within seconds.
 #pragma once
 
 #include <memory>
@@ -27,6 +28,7 @@ enum : std::size_t {
   start_velocity,
   start_gyro_bias,
   start_accelerometer_bias,
+  lost_after,
   count,
 };
 }  // namespace contact_kalman_parameter

@@ -24,6 +24,8 @@ struct EstimatorInput {
   std::uint64_t support = 0;
   // Its parameters, SI, in the order of its table (behaviors/language/estimators.h).
   std::span<const double> parameters;
+  // The joints' values are of this tick; else the last good ones.
+  bool joints_fresh = true;
 };
 
 // How an estimator judges itself; what it does not estimate is NaN.

@@ -37,8 +37,8 @@ bool Measured::update(const EstimatorInput& input, Estimate& estimate) noexcept 
   if (p.size() < parameter::count || !finite_sensors(input.sensors, joints_.count())) return false;
   gyro_ = R_BI_ * vector_of(input.sensors.gyro);
   accelerometer_ = R_BI_ * vector_of(input.sensors.accelerometer);
-  joints_.update(input.sensors, p[parameter::joint_velocity_filter], p[parameter::encoder_time],
-                 estimate.state);
+  joints_.update(input.sensors, input.joints_fresh, p[parameter::joint_velocity_filter],
+                 p[parameter::encoder_time], estimate.state);
   contacts_.update(input.sensors, input.model, input.support,
                    {.debounce = p[parameter::contact_debounce],
                     .force = p[parameter::contact_force],

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/index.h"
+#include "engine/estimators/parts/marker_gate.h"
 
 namespace footfall::engine {
 
@@ -38,10 +39,11 @@ int MotionCapture::collect_markers(const hal::Sensors& sensors) noexcept {
 bool MotionCapture::start(const EstimatorInput& input) noexcept {
   if (!input.sensors.mocap_fresh) return false;
   if (!(input.sensors.mocap_age <= input.parameters[mocap::oldest_frame])) return false;
-  const int count = collect_markers(input.sensors);
-  const std::span<const MarkerPair> seen = std::span(pairs_).first(at(count));
+  const std::span<MarkerPair> all = std::span(pairs_).first(at(collect_markers(input.sensors)));
   Matrix3d R;
-  if (!fit_rotation(seen, R)) return false;
+  const int count = agreeing_rotation(all, input.parameters[mocap::marker_gate], R);
+  if (count == 0) return false;
+  const std::span<const MarkerPair> seen = all.first(at(count));
   memory_.R = R * rotation_exp(input.sensors.mocap_age * rate_);
   memory_.velocity = memory_.R * measured_.leg_velocity(rate_);
   memory_.position =
@@ -97,10 +99,13 @@ void MotionCapture::correct_place(std::span<const double> parameters, const Vect
 
 // After a long gap the place is wrong by what the legs slipped, or by metres where none touched: to
 // correct it through the gains would make a velocity of it. The velocity turns with the heading.
-bool MotionCapture::regain(std::span<const MarkerPair> seen, const Motion& motion) noexcept {
+bool MotionCapture::regain(std::span<MarkerPair> seen, double gate, const Motion& motion) noexcept {
   Memory& m = memory_;
   Matrix3d R;
-  if (!fit_rotation(seen, R)) return false;
+  const int count = agreeing_rotation(seen, gate, R);
+  if (count == 0) return false;
+  seen = seen.first(at(count));
+  m.markers = count;
   const Matrix3d now = R * motion.turn;
   m.velocity = now * m.R.transpose() * m.velocity;
   m.position = fit_affine(seen, R, 0.0).origin(R) + motion.shift;
@@ -119,14 +124,14 @@ void MotionCapture::correct_by_frame(const EstimatorInput& input,
   Motion motion;
   m.markers = 0;
   if (!(age <= p[mocap::oldest_frame]) || !m.history.since(age, motion)) return;
-  m.markers = collect_markers(input.sensors);
-  if (m.markers == 0) return;
-  const std::span<const MarkerPair> seen = std::span(pairs_).first(at(m.markers));
-
+  const std::span<MarkerPair> all = std::span(pairs_).first(at(collect_markers(input.sensors)));
   const bool lost = m.frame_time > p[mocap::regain_after];
-  if (lost && regain(seen, motion)) return;
+  if (lost && regain(all, p[mocap::marker_gate], motion)) return;
   // At exposure: as predicted, and as the frame corrects it.
   const Matrix3d predicted = m.R * motion.turn.transpose();
+  m.markers = agreeing_markers(all, predicted, p[mocap::marker_gate]);
+  if (m.markers == 0) return;
+  const std::span<const MarkerPair> seen = all.first(at(m.markers));
   quality.marker_innovation = marker_residual(seen, predicted, m.position - motion.shift);
   const AffineFit fit = fit_affine(seen, predicted, p[mocap::lambda]);
   const Matrix3d R = closest_rotation(fit.A);

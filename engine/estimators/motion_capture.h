@@ -22,12 +22,13 @@ enum : std::size_t {
   leg_velocity_time,
   acceleration_gain,
   regain_after,
+  marker_gate,
   count,
 };
 }  // namespace motion_capture_parameter
 
-// No state before the first frame with three markers that are not on a line. Afterwards it goes on
-// without frames: the position then drifts with the legs.
+// No state before the first frame with three markers that agree and are not on a line. Afterwards
+// it goes on without frames: the position then drifts with the legs.
 class MotionCapture final : public Estimator {
  public:
   MotionCapture(const behaviors::EstimatorSpec& spec, const model::RobotDescription& robot,
@@ -55,7 +56,7 @@ class MotionCapture final : public Estimator {
   void predict() noexcept;
   void correct_by_legs(std::span<const double> parameters, EstimateQuality& quality) noexcept;
   void correct_by_frame(const EstimatorInput& input, EstimateQuality& quality) noexcept;
-  bool regain(std::span<const MarkerPair> seen, const Motion& motion) noexcept;
+  bool regain(std::span<MarkerPair> seen, double gate, const Motion& motion) noexcept;
   void correct_place(std::span<const double> parameters, const Vector3d& error,
                      double interval) noexcept;
   void write(Estimate& estimate) const noexcept;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <type_traits>
 
 #include "core/index.h"
 
@@ -33,6 +34,15 @@ void InvariantFilter<Feet>::propagate(const Vector3d& gyro, const Vector3d& acce
   p_ += dt * v_ + 0.5 * dt * dt * acceleration;
   v_ += dt * acceleration;
   R_ = R_ * rotation_exp(turn);
+}
+
+// p̂ - p = xi_p - [p]x xi_R = 0.
+template <int Feet>
+void InvariantFilter<Feet>::tie_place(const Vector3d& p) noexcept {
+  const Matrix3d S = skew(p);
+  P_.template middleRows<3>(kP) = S * P_.template middleRows<3>(kR);
+  P_.template middleCols<3>(kP) = P_.template middleRows<3>(kP).transpose();
+  P_.template block<3, 3>(kP, kP) = S * P_.template block<3, 3>(kR, kR) * S.transpose();
 }
 
 // The gyroscope's error turns all errors about the origin: with B = -R dt,
@@ -77,6 +87,8 @@ void InvariantFilter<Feet>::couple_gyro_bias(double variance, double dt) noexcep
   for (int i = 0; i < kBlocks; ++i) {
     if (!used[at(i)]) continue;
     const int row = kR + 3 * i;
+    way_with_error_.template middleCols<3>(row) +=
+        way_with_error_.template middleCols<3>(kGyroBias) * G[at(i)].transpose();
     P_.template block<3, 3>(row, kGyroBias) += G[at(i)] * Pgg;
     P_.template block<3, 3>(row, kAccelerometerBias) += G[at(i)] * Pga;
     P_.template block<3, 3>(kGyroBias, row) = P_.template block<3, 3>(row, kGyroBias).transpose();
@@ -92,6 +104,8 @@ void InvariantFilter<Feet>::propagate_covariance(const InvariantNoise& noise, do
                                                  double dt) noexcept {
   P_.template middleRows<3>(kP) += dt * P_.template middleRows<3>(kV);
   P_.template middleCols<3>(kP) += dt * P_.template middleCols<3>(kV);
+  WayRows& way = way_with_error_;
+  way.template middleCols<3>(kP) += dt * way.template middleCols<3>(kV);
 
   Matrix3d from_R = Matrix3d::Zero();  // dt [g]x, g = (0, 0, -gravity)
   from_R(0, 1) = dt * gravity;
@@ -105,6 +119,9 @@ void InvariantFilter<Feet>::propagate_covariance(const InvariantNoise& noise, do
   P_.template middleCols<3>(kV) += columns;
   P_.template middleRows<3>(kV) += columns.transpose();
   P_.template block<3, 3>(kV, kV) += own;
+  way.template middleCols<3>(kV) +=
+      way.template middleCols<3>(kR) * from_R.transpose() +
+      way.template middleCols<3>(kAccelerometerBias) * from_bias.transpose();
 
   const double sample = noise.sample;
   couple_gyro_bias(noise.gyro * noise.gyro * sample * dt, dt);
@@ -131,6 +148,7 @@ void InvariantFilter<Feet>::add_foot(int i, const Vector3d& h, double deviation)
   P_.template middleCols<3>(row) = P_.template middleCols<3>(kP);
   P_.template block<3, 3>(row, row) = P_.template block<3, 3>(kP, kP);
   P_.template block<3, 3>(row, row).diagonal().array() += deviation * deviation;
+  way_with_error_.template middleCols<3>(row) = way_with_error_.template middleCols<3>(kP);
 }
 
 template <int Feet>
@@ -139,12 +157,14 @@ void InvariantFilter<Feet>::drop_foot(int i) noexcept {
   has_foot_[at(i)] = false;
   P_.template middleRows<3>(row).setZero();
   P_.template middleCols<3>(row).setZero();
+  way_with_error_.template middleCols<3>(row).setZero();
 }
 
 // For x = p, d: x̂ - c - exp([xi_R]x) (x - c) = xi_x - [c]x xi_R to first order moves the origin to
-// c. Then p̂ - p = xi_p - [p]x xi_R is taken out of all places, horizontally.
+// c. Then p̂ - p = xi_p - [p]x xi_R is taken out of all places, horizontally, and added to the way's
+// error.
 template <int Feet>
-Vector3d InvariantFilter<Feet>::anchor(Vector3d& variance) noexcept {
+Vector3d InvariantFilter<Feet>::anchor() noexcept {
   const Vector3d c(p_[0], p_[1], 0.0);
   std::array<int, Feet + 1> places{kP};
   int count = 1;
@@ -155,26 +175,28 @@ Vector3d InvariantFilter<Feet>::anchor(Vector3d& variance) noexcept {
   }
   p_ -= c;
   const Matrix3d S = skew(c), here = skew(p_);
-  using Rows = Eigen::Matrix<double, 2, kSize>;
-  using Columns = Eigen::Matrix<double, kSize, 2>;
+  // On the columns of M; returns those of p̂ - p.
+  const auto move_columns = [&](auto& M) {
+    using Columns =
+        Eigen::Matrix<double, std::remove_reference_t<decltype(M)>::RowsAtCompileTime, 2>;
+    for (int k = 0; k < count; ++k) {
+      M.template middleCols<3>(places[at(k)]) -= M.template middleCols<3>(kR) * S.transpose();
+    }
+    const Columns place = M.template middleCols<2>(kP) -
+                          M.template middleCols<3>(kR) * here.template topRows<2>().transpose();
+    for (int k = 0; k < count; ++k) M.template middleCols<2>(places[at(k)]) -= place;
+    return place;
+  };
   for (int k = 0; k < count; ++k) {
     P_.template middleRows<3>(places[at(k)]) -= S * P_.template middleRows<3>(kR);
   }
-  const Rows rows =
+  WayRows rows =
       P_.template middleRows<2>(kP) - here.template topRows<2>() * P_.template middleRows<3>(kR);
   for (int k = 0; k < count; ++k) P_.template middleRows<2>(places[at(k)]) -= rows;
-  for (int k = 0; k < count; ++k) {
-    P_.template middleCols<3>(places[at(k)]) -= P_.template middleCols<3>(kR) * S.transpose();
-  }
-  const Columns columns = P_.template middleCols<2>(kP) -
-                          P_.template middleCols<3>(kR) * here.template topRows<2>().transpose();
-  for (int k = 0; k < count; ++k) P_.template middleCols<2>(places[at(k)]) -= columns;
-  // Of p̂ - p before: the rows, less what the columns took from them.
-  const Eigen::Matrix2d before =
-      (rows.template middleCols<2>(kP) -
-       rows.template middleCols<3>(kR) * S.transpose().leftCols(2)) -
-      rows.template middleCols<3>(kR) * here.template topRows<2>().transpose();
-  variance.head<2>() += before.diagonal();
+  move_columns(P_);
+  const Eigen::Matrix2d with_way = move_columns(way_with_error_);
+  way_ += with_way + with_way.transpose() + move_columns(rows);
+  way_with_error_ += rows;
   return c;
 }
 
@@ -215,6 +237,10 @@ double InvariantFilter<Feet>::correct_by_foot(int i, const Vector3d& h, double d
   const Eigen::Matrix<double, kSize, 3> gain = PHt * W.transpose();
   add_error(-(gain * whitened));
   P_.noalias() -= gain.lazyProduct(gain.transpose());
+  const Eigen::Matrix<double, 2, 3> way =
+      (way_with_error_.template middleCols<3>(kP) - way_with_error_.template middleCols<3>(row)) *
+      W.transpose();
+  way_with_error_.noalias() -= way.lazyProduct(gain.transpose());
   return residual.norm();
 }
 
@@ -228,6 +254,9 @@ void InvariantFilter<Feet>::correct_height(int i, double z, double deviation) no
   const double residual = d[2] - z;
   add_error(-(residual / S) * PHt);
   P_.noalias() -= (PHt / S) * PHt.transpose();
+  const Eigen::Vector2d way = way_with_error_.col(row + 2) + d[1] * way_with_error_.col(kR) -
+                              d[0] * way_with_error_.col(kR + 1);
+  way_with_error_.noalias() -= (way / S) * PHt.transpose();
 }
 
 template class InvariantFilter<2>;

@@ -34,10 +34,14 @@ class InvariantFilter {
   enum Block { kGyroBias = 0, kAccelerometerBias = 3, kR = 6, kV = 9, kP = 12, kFeet = 15 };
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Error = Eigen::Matrix<double, kSize, 1>;
+  using WayRows = Eigen::Matrix<double, 2, kSize>;
 
   // Without feet; a diagonal covariance of the base.
   void start(const Matrix3d& R, const Vector3d& v, const Vector3d& p) noexcept;
   void set_deviation(Block block, const Vector3d& deviation) noexcept;
+  // The base at `p` is where the world is told from: no error of attitude moves it. For a start,
+  // after the attitude's deviation.
+  void tie_place(const Vector3d& p) noexcept;
 
   // Over dt with mean rate and specific force, both measured, base axes.
   void propagate(const Vector3d& gyro, const Vector3d& accelerometer, double gravity,
@@ -53,9 +57,10 @@ class InvariantFilter {
   // Puts the world's origin where the base truly is, horizontally: the base's place becomes the
   // origin without error, a foot's error what it was relative to the base. Place is not observable,
   // so that nothing is lost; but with the origin far away each correction of heading, which turns
-  // the estimate about it, would move the base and the feet. Returns the base's place before and
-  // adds the variance that it had.
-  Vector3d anchor(Vector3d& variance) noexcept;
+  // the estimate about it, would move the base and the feet. Returns the base's place before. What
+  // errors these places had, summed up, is the error e of the way; corrections do not change the
+  // way (Schmidt: a state that is considered), but e goes on depending on the error's other parts.
+  Vector3d anchor() noexcept;
   void move_foot(int i, const Vector3d& shift) noexcept {
     feet_[static_cast<std::size_t>(i)] += shift;
   }
@@ -72,6 +77,9 @@ class InvariantFilter {
   const Vector3d& gyro_bias() const noexcept { return gyro_bias_; }
   const Vector3d& accelerometer_bias() const noexcept { return accelerometer_bias_; }
   const Covariance& covariance() const noexcept { return P_; }
+  // Of the way's error e, x and y in m: with the error, and its own.
+  const WayRows& way_with_error() const noexcept { return way_with_error_; }
+  const Eigen::Matrix2d& way_covariance() const noexcept { return way_; }
   // For tests: the covariance, and the estimate moved by an error, x̂ = exp(xi) x.
   Covariance& covariance() noexcept { return P_; }
   void add_error(const Error& error) noexcept;
@@ -88,6 +96,8 @@ class InvariantFilter {
   std::array<Vector3d, Feet> feet_{};
   std::array<bool, Feet> has_foot_{};
   Covariance P_ = Covariance::Zero();
+  WayRows way_with_error_ = WayRows::Zero();
+  Eigen::Matrix2d way_ = Eigen::Matrix2d::Zero();
 };
 
 extern template class InvariantFilter<2>;

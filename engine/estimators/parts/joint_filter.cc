@@ -20,10 +20,16 @@ JointFilter::JointFilter(const model::RobotDescription& robot)
   }
 }
 
-void JointFilter::update(const hal::Sensors& sensors, double velocity_filter, double encoder_time,
-                         model::State& state) noexcept {
-  const double rate_share = low_pass_share(period_, velocity_filter);
-  const double offset_share = low_pass_share(period_, encoder_time);
+void JointFilter::update(const hal::Sensors& sensors, bool fresh, double velocity_filter,
+                         double encoder_time, model::State& state) noexcept {
+  ++ticks_;
+  if (started_ && !fresh) {
+    for (int i = 0; i < count_; ++i) state.q[at(i)] += period_ * rate_[at(i)];
+    return;
+  }
+  const double elapsed = ticks_ * period_;
+  const double rate_share = low_pass_share(elapsed, velocity_filter);
+  const double offset_share = low_pass_share(elapsed, encoder_time);
   // Ideal actuators have no motors: all angles are exactly 0.
   const bool motors = std::any_of(sensors.motor.begin(), sensors.motor.begin() + count_,
                                   [](double angle) { return angle != 0.0; });
@@ -32,7 +38,7 @@ void JointFilter::update(const hal::Sensors& sensors, double velocity_filter, do
     const std::size_t j = at(i);
     const bool elastic = motors && compliance_[j] > 0.0;
     const double fine = elastic ? sensors.motor[j] - sensors.tau[j] * compliance_[j] : sensors.q[j];
-    const double rate = elastic && goes_on ? (fine - last_[j]) / period_ : sensors.qd[j];
+    const double rate = elastic && goes_on ? (fine - last_[j]) / elapsed : sensors.qd[j];
     const double offset = sensors.q[j] - fine;
     rate_[j] = goes_on ? rate_[j] + rate_share * (rate - rate_[j]) : rate;
     offset_[j] = goes_on ? offset_[j] + offset_share * (offset - offset_[j]) : offset;
@@ -41,6 +47,7 @@ void JointFilter::update(const hal::Sensors& sensors, double velocity_filter, do
     state.qd[j] = rate_[j];
   }
   started_ = true;
+  ticks_ = 0;
   motors_ = motors;
 }
 

@@ -24,7 +24,9 @@ class JointFilter {
  public:
   explicit JointFilter(const model::RobotDescription& robot);
   // Time constants in s, 0: none. Writes q and qd. The first call has velocities of the sensors.
-  void update(const hal::Sensors& sensors, double velocity_filter, double encoder_time,
+  // Not `fresh`: the sensors have no new values; the joints go on as they moved, and the next rate
+  // is the mean since the last sample.
+  void update(const hal::Sensors& sensors, bool fresh, double velocity_filter, double encoder_time,
               model::State& state) noexcept;
   int count() const noexcept { return count_; }
 
@@ -35,6 +37,7 @@ class JointFilter {
   std::array<double, core::kMaxJoints> last_{};        // q_m, rad
   std::array<double, core::kMaxJoints> offset_{};      // rad
   std::array<double, core::kMaxJoints> rate_{};        // rad/s
+  int ticks_ = 0;                                      // since the last sample
   bool started_ = false;
   bool motors_ = false;  // they are reported
 };

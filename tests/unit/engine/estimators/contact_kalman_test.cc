@@ -117,5 +117,25 @@ TEST(ContactKalman, AfterAnotherEstimatorItGoesOnFromItsEstimate) {
   }
 }
 
+// On a rope, say: after `lost_after` there is no state, and the last one stays.
+TEST(ContactKalman, WithoutAFootForLongItHasNoEstimate) {
+  SensedWalk walk(6, laboratory_errors());
+  KalmanWalk kalman(walk);
+  kalman.parameters[engine::contact_kalman_parameter::lost_after] = 0.5;
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_TRUE(walk.next());
+    ASSERT_TRUE(kalman.tick(walk.sensors, walk.support));
+  }
+  hal::Sensors lifted = walk.sensors;
+  lifted.contact.fill(false);
+  int ticks = 0;
+  while (kalman.tick(lifted, 0) && ticks < 3000) ++ticks;
+  const model::State last = kalman.estimate.state;
+  // 0.5 s of 1500 ticks after the switches' debouncing of 2 ms.
+  EXPECT_NEAR(ticks, 750, 5);
+  EXPECT_FALSE(kalman.tick(lifted, 0));
+  EXPECT_EQ(kalman.estimate.state.p_WB, last.p_WB);
+}
+
 }  // namespace
 }  // namespace footfall::tests

@@ -240,9 +240,8 @@ TEST(InvariantFilter, AnchoringTakesTheBasesPlaceOutOfTheErrorAndNothingElse) {
   constexpr double kSize = 1e-6;
   Draw draw(9);
   const Filter truth = moving(draw);
-  Vector3d ignored = Vector3d::Zero();
   Filter anchored = truth;
-  EXPECT_EQ(anchored.anchor(ignored), Vector3d(truth.p()[0], truth.p()[1], 0.0));
+  EXPECT_EQ(anchored.anchor(), Vector3d(truth.p()[0], truth.p()[1], 0.0));
   Covariance T;
   for (int k = 0; k < Filter::kSize; ++k) {
     Error error = Error::Zero();
@@ -250,13 +249,12 @@ TEST(InvariantFilter, AnchoringTakesTheBasesPlaceOutOfTheErrorAndNothingElse) {
     Filter plus = truth, minus = truth;
     plus.add_error(error);
     minus.add_error(-error);
-    plus.anchor(ignored);
-    minus.anchor(ignored);
+    plus.anchor();
+    minus.anchor();
     T.col(k) = (error_of(plus, anchored) - error_of(minus, anchored)) / (2.0 * kSize);
   }
   Filter filter = truth;
-  Vector3d variance = Vector3d::Zero();
-  filter.anchor(variance);
+  filter.anchor();
   const Covariance expected = T * truth.covariance() * T.transpose();
   // Second order of the differences: 1e-12 / 1e-6; places of 1 m, entries of 0.1.
   EXPECT_LT((filter.covariance() - expected).cwiseAbs().maxCoeff(), 1e-7);
@@ -271,9 +269,29 @@ TEST(InvariantFilter, AnchoringTakesTheBasesPlaceOutOfTheErrorAndNothingElse) {
                          S * P.block<3, 3>(Filter::kR, Filter::kP) -
                          P.block<3, 3>(Filter::kP, Filter::kR) * S.transpose() +
                          S * P.block<3, 3>(Filter::kR, Filter::kR) * S.transpose();
-  EXPECT_NEAR(variance[0], place(0, 0), 1e-12);
-  EXPECT_NEAR(variance[1], place(1, 1), 1e-12);
+  EXPECT_LT((filter.way_covariance() - place.topLeftCorner<2, 2>()).norm(), 1e-12);
   EXPECT_LT((filter.foot(1) - filter.p() - (truth.foot(1) - truth.p())).norm(), 1e-12);
+}
+
+// A heading that is wrong by a constant turns the whole way, however often the world is anchored:
+// the deviation across is that of the heading times the distance.
+TEST(InvariantFilter, AWrongHeadingTurnsTheWholeWay) {
+  constexpr double kHeading = 0.02, kSpeed = 0.5, kDt = 2e-3;  // rad, m/s, s
+  for (const int steps : {1, 10, 100}) {
+    Filter f;
+    f.start(Matrix3d::Identity(), Vector3d(kSpeed, 0, 0), Vector3d(0, 0, 1));
+    // No error xi_v of its own: the velocity is known in the base's axes and turns with the
+    // heading.
+    f.set_deviation(Filter::kR, Vector3d(0, 0, kHeading));
+    f.tie_place(f.p());
+    for (int k = 1; k <= 1000; ++k) {
+      f.propagate(Vector3d::Zero(), Vector3d(0, 0, kGravity), kGravity, kDt);
+      f.propagate_covariance({.sample = kDt}, kGravity, kDt);
+      if (k % (1000 / steps) == 0) f.anchor();
+    }
+    EXPECT_NEAR(std::sqrt(f.way_covariance()(1, 1)), kHeading * kSpeed * 2.0, 1e-9) << steps;
+    EXPECT_NEAR(f.way_covariance()(0, 0), 0.0, 1e-12) << steps;
+  }
 }
 
 // Errors drawn as the filter believes them: the squared error over the covariance (NEES) has the

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "engine/estimators/parts/marker_gate.h"
 #include "tests/support/hume.h"
 
 namespace footfall::tests {
@@ -149,6 +150,55 @@ TEST(MarkerFit, AFrameByItselfNeedsThreeMarkersThatAreNotOnALine) {
   EXPECT_LT((found - R).norm(), 1e-12);
   EXPECT_FALSE(
       engine::fit_rotation(seen_from({{0, 0, 0}, {0.1, 0, 0}}, R, {1, 2, 3}, 0.0, engine), found));
+}
+
+// Each of Hume's markers in turn is 10 cm off, the others have 1 mm of noise: it alone goes, and
+// the fit of the others is what it is without it.
+TEST(MarkerGate, AMarkerThatDisagreesWithTheOthersIsNotUsed) {
+  const auto places = hume_markers();
+  const Matrix3d R = engine::rotation_exp(Vector3d(0.3, -0.2, 1.1));
+  std::mt19937_64 engine(11);
+  for (std::size_t odd = 0; odd < places.size(); ++odd) {
+    const auto good = seen_from(places, R, Vector3d(1, 2, 1), 1e-3, engine);
+    auto pairs = good;
+    pairs[odd].position += Vector3d(0.06, -0.08, 0.0);
+    auto rest = good;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(odd));
+    Matrix3d expected, found;
+    ASSERT_TRUE(engine::fit_rotation(rest, expected));
+    auto tracked = pairs;
+    // The prediction is off by 0.05 rad: at most 0.05 rad x 0.3 m = 15 mm.
+    const Matrix3d predicted = engine::rotation_exp(Vector3d(0, 0.05, 0)) * R;
+    EXPECT_EQ(engine::agreeing_markers(tracked, predicted, 0.03), 6) << odd;
+    EXPECT_EQ(tracked.back().place, places[odd]);
+    EXPECT_EQ(engine::agreeing_rotation(pairs, 0.03, found), 6) << odd;
+    EXPECT_LT((found - expected).norm(), 1e-12);
+  }
+}
+
+TEST(MarkerGate, TwoTakenForEachOtherBothGo) {
+  const auto places = hume_markers();
+  std::mt19937_64 engine(12);
+  auto pairs = seen_from(places, Matrix3d::Identity(), Vector3d(0, 0, 1), 1e-3, engine);
+  std::swap(pairs[0].position, pairs[4].position);
+  Matrix3d R;
+  auto tracked = pairs;
+  EXPECT_EQ(engine::agreeing_markers(tracked, Matrix3d::Identity(), 0.03), 5);
+  EXPECT_EQ(engine::agreeing_rotation(pairs, 0.03, R), 5);
+  // Noise of 1 mm over markers 0.1 m and more from their middle.
+  EXPECT_LT(engine::rotation_log(R).norm(), 0.03);
+}
+
+TEST(MarkerGate, OfThreeThatDisagreeNoneIsBelieved) {
+  const auto places = hume_markers();
+  std::mt19937_64 engine(13);
+  auto pairs = seen_from(places, Matrix3d::Identity(), Vector3d(0, 0, 1), 0.0, engine);
+  pairs.resize(3);
+  Matrix3d R;
+  EXPECT_EQ(engine::agreeing_rotation(pairs, 0.03, R), 3);
+  pairs[1].position += 0.3 * (pairs[1].position - pairs[0].position).normalized();
+  EXPECT_EQ(engine::agreeing_rotation(pairs, 0.03, R), 0);
+  EXPECT_EQ(engine::agreeing_rotation(pairs, 0.0, R), 3);  // no gate
 }
 
 }  // namespace

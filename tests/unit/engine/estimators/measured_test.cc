@@ -21,7 +21,7 @@ TEST(JointFilter, WithoutAMotorTheEncoderCounts) {
   sensors.q[1] = 0.3;
   sensors.qd[1] = 2.0;
   model::State state;
-  filter.update(sensors, 0.0, 0.05, state);
+  filter.update(sensors, true, 0.0, 0.05, state);
   EXPECT_EQ(state.q[1], 0.3);
   EXPECT_EQ(state.qd[1], 2.0);
 }
@@ -39,7 +39,7 @@ TEST(JointFilter, MotorLessDeflectionIsTheJointWhateverTheSpring) {
     sensors.q[1] = 3.8e-4 * std::round(q / 3.8e-4);
     sensors.tau[1] = spring * deflection;
     sensors.motor[1] = q + deflection;
-    filter.update(sensors, 0.0, 0.05, state);
+    filter.update(sensors, true, 0.0, 0.05, state);
     // The encoder's rounding is at most half a count, and mostly averaged out.
     ASSERT_NEAR(state.q[1], q, 1.9e-4);
     if (i > 0) {
@@ -49,14 +49,33 @@ TEST(JointFilter, MotorLessDeflectionIsTheJointWhateverTheSpring) {
   }
 }
 
+// A joint that moves on at a constant rate while three reads bring nothing: it is where it would
+// have been seen, and the next sample makes no rate of four ticks' way in one.
+TEST(JointFilter, WithoutNewValuesAJointGoesOnAsItMoved) {
+  const model::RobotDescription robot = load_hume();
+  engine::JointFilter filter(robot);
+  hal::Sensors sensors;
+  model::State state;
+  const double step = 0.7 * robot.period_s();
+  for (int k = 0; k < 20; ++k) {
+    const bool fresh = k < 10 || k > 12;
+    if (fresh) sensors.motor[3] = 0.1 + step * k;
+    if (fresh) sensors.q[3] = sensors.motor[3];
+    sensors.qd[3] = 0.7;
+    filter.update(sensors, fresh, 1e-3, 0.05, state);
+    ASSERT_NEAR(state.q[3], 0.1 + step * k, 1e-12) << k;
+    ASSERT_NEAR(state.qd[3], 0.7, 1e-9) << k;
+  }
+}
+
 TEST(JointFilter, VelocitiesAreLowPassed) {
   const model::RobotDescription robot = load_hume();
   engine::JointFilter filter(robot);
   hal::Sensors sensors;
   model::State state;
-  filter.update(sensors, 10e-3, 0.0, state);
+  filter.update(sensors, true, 10e-3, 0.0, state);
   sensors.qd[0] = 1.0;
-  for (int i = 0; i < 15; ++i) filter.update(sensors, 10e-3, 0.0, state);
+  for (int i = 0; i < 15; ++i) filter.update(sensors, true, 10e-3, 0.0, state);
   EXPECT_NEAR(state.qd[0], 1.0 - std::exp(-15 * robot.period_s() / 10e-3), 1e-12);
 }
 

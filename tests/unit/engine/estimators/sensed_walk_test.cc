@@ -151,6 +151,7 @@ TEST(ContactKalman, ItsTableAndItsParametersAgree) {
   EXPECT_EQ(rows[parameter::start_velocity].name, "start_velocity");
   EXPECT_EQ(rows[parameter::start_gyro_bias].name, "start_gyro_bias");
   EXPECT_EQ(rows[parameter::start_accelerometer_bias].name, "start_accelerometer_bias");
+  EXPECT_EQ(rows[parameter::lost_after].name, "lost_after");
 }
 
 }  // namespace
