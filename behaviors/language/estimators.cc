@@ -25,7 +25,7 @@ using core::kVelocity;
 
 // First of every estimator that measures (engine/estimators/measured.h).
 constexpr std::array kMeasured = {
-    EstimatorParameter{"joint_velocity_filter", kTime, 2e-3, 0.0, 0.1,
+    EstimatorParameter{"joint_velocity_filter", kTime, 1e-3, 0.0, 0.1,
                        "time constant of the joint velocities' low-pass; 0: none"},
     EstimatorParameter{
         "encoder_time", kTime, 0.05, 0.0, 10.0,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -140,6 +141,7 @@ class EstimatorRun {
       hal::Commands ignored;
       const bool fresh = layout_.unpack(log_.inputs.row(tick), sensors_, ignored);
       const bool estimated = step(tick, fresh);
+      if (estimated && !start_) start_.emplace(estimate_.state, engine::true_state(sensors_));
       const double time = static_cast<double>(std::max<std::int64_t>(tick, 0)) * 1e3 / rate;
       if (time < figures_.from) continue;
       if (!estimated) ++figures_.without;
@@ -190,7 +192,12 @@ class EstimatorRun {
     figures_.rotation.add(angle_between(state.q_WB, sensors_.q_WB));
     engine::ErrorCovariance covariance;
     if (estimator_->covariance(covariance)) {
-      figures_.nees.add(normalised_error(state, engine::true_state(sensors_), covariance));
+      const model::State truth = engine::true_state(sensors_);
+      const NormalisedError error = normalised_error(state, truth, covariance);
+      figures_.nees.add(error.all);
+      figures_.nees_tilt.add(error.tilt);
+      figures_.nees_velocity.add(error.velocity);
+      figures_.nees_place.add(start_->normalised_place(state, truth, covariance));
     }
     const double heading = estimate_.quality.attitude[2];
     if (figures_.ticks == 1) figures_.heading_deviation[0] = heading;
@@ -240,6 +247,7 @@ class EstimatorRun {
   std::set<std::int64_t> plans_;
   hal::Sensors sensors_;
   engine::Estimate estimate_;
+  std::optional<StartFrame> start_;
   EstimationFigures figures_;
 };
 
@@ -303,7 +311,11 @@ nlohmann::ordered_json estimation_json(const EstimationFigures& f) {
   out["accelerometer_bias_mps2"] = or_null(f.accelerometer_bias);
   out["nees"] = nullptr;
   if (f.nees.count > 0) {
-    out["nees"] = {{"mean", or_null(f.nees.mean())}, {"dimension", kNeesDimension}};
+    out["nees"] = {{"mean", or_null(f.nees.mean())},
+                   {"dimension", kNeesDimension},
+                   {"tilt", {{"mean", or_null(f.nees_tilt.mean())}, {"dimension", 2}}},
+                   {"velocity", {{"mean", or_null(f.nees_velocity.mean())}, {"dimension", 3}}},
+                   {"place", {{"mean", or_null(f.nees_place.mean())}, {"dimension", 2}}}};
   }
   out["markers"] = f.markers;
   return out;
@@ -337,6 +349,11 @@ std::string estimation_text(const EstimationFigures& f) {
     text +=
         fmt::format("  NEES, mean             {:10.3f} of roll, pitch and velocity: {} expected\n",
                     f.nees.mean(), kNeesDimension);
+    text += fmt::format(
+        "                         {:10.3f} of roll and pitch: 2 expected\n"
+        "                         {:10.3f} of velocity: 3 expected\n"
+        "                         {:10.3f} of the place on the ground: 2 expected\n",
+        f.nees_tilt.mean(), f.nees_velocity.mean(), f.nees_place.mean());
   }
   if (f.markers.size() > 1) {
     for (std::size_t n = 0; n < f.markers.size(); ++n) {

@@ -36,7 +36,9 @@ struct EstimationFigures {
   std::array<double, 3> gyro_bias_error{};    // rad/s, IMU frame
   std::array<double, 2> heading_deviation{};  // rad, by the estimator, of the first and last tick
   double accelerometer_bias = 0.0;            // m/s^2, norm
-  NeesFigure nees;  // of roll, pitch and velocity; none: the estimator has no covariance
+  // Of roll, pitch and velocity together and apart, and of the horizontal place. None: the
+  // estimator has no covariance.
+  NeesFigure nees, nees_tilt, nees_velocity, nees_place;
   std::vector<double> markers;  // share of the ticks in which it used 0, 1, ... markers
 };
 

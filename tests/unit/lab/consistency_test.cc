@@ -27,7 +27,7 @@ class KnownFilter {
   }
 
   // `scale`: of the errors against those that the covariance tells.
-  double draw(double scale) {
+  lab::NormalisedError draw(double scale) {
     Vector5 error;
     for (int i = 0; i < 5; ++i) error[i] = normal_(random_);
     error = scale * root_ * error;
@@ -73,9 +73,10 @@ class KnownFilter {
 
 constexpr int kDraws = 4000;
 
-double mean_of_draws(KnownFilter filter, double scale) {
+double mean_of_draws(KnownFilter filter, double scale,
+                     double lab::NormalisedError::*part = &lab::NormalisedError::all) {
   lab::NeesFigure figure;
-  for (int k = 0; k < kDraws; ++k) figure.add(filter.draw(scale));
+  for (int k = 0; k < kDraws; ++k) figure.add(filter.draw(scale).*part);
   return figure.mean();
 }
 
@@ -87,6 +88,13 @@ TEST(NormalisedError, OfAConsistentFilterIsItsDimensionInTheMean) {
   EXPECT_NEAR(mean_of_draws(KnownFilter(0.0), 2.0), 4.0 * n, 4.0 * tolerance);
 }
 
+TEST(NormalisedError, OfItsPartsIsTheirDimension) {
+  EXPECT_NEAR(mean_of_draws(KnownFilter(0.0), 1.0, &lab::NormalisedError::tilt), 2.0,
+              4.0 * std::sqrt(4.0 / kDraws));
+  EXPECT_NEAR(mean_of_draws(KnownFilter(0.0), 1.0, &lab::NormalisedError::velocity), 3.0,
+              4.0 * std::sqrt(6.0 / kDraws));
+}
+
 TEST(NormalisedError, DoesNotDependOnTheHeadingsError) {
   const double n = lab::kNeesDimension;
   EXPECT_NEAR(mean_of_draws(KnownFilter(1.5), 1.0), n, 4.0 * std::sqrt(2.0 * n / kDraws));
@@ -94,7 +102,21 @@ TEST(NormalisedError, DoesNotDependOnTheHeadingsError) {
 }
 
 TEST(NormalisedError, IsNoNumberWithoutACovariance) {
-  EXPECT_TRUE(std::isnan(lab::normalised_error({}, {}, {})));
+  EXPECT_TRUE(std::isnan(lab::normalised_error({}, {}, {}).all));
+}
+
+// The truth starts at (3, 4), heading 90 degrees, and goes on by 2 m; the estimator starts at its
+// origin. Told 2 m ahead and 0.2 m aside, with deviations of 0.1 m and 0.1 m, that is 4.
+TEST(NormalisedError, OfThePlaceIsInTheEstimatorsOwnWorld) {
+  model::State start, truth, estimate;
+  start.p_WB = {3, 4, 0.8};
+  start.q_WB = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
+  truth = start;
+  truth.p_WB = {3, 6, 0.8};
+  estimate.p_WB = {2.0, 0.2, 0.8};
+  engine::ErrorCovariance covariance{};
+  covariance[9 * 6 + 6] = covariance[9 * 7 + 7] = 0.01;
+  EXPECT_NEAR(lab::StartFrame({}, start).normalised_place(estimate, truth, covariance), 4.0, 1e-9);
 }
 
 }  // namespace

@@ -129,6 +129,8 @@ results = measure()
 worst = {name: max(figure(name, j) for j in results[name.split()[0]]) for name, _, _ in BARS}
 nees = {part: statistics.mean(j["nees"]["mean"] / j["nees"]["dimension"] for j in results[part])
         for part in ("kalman", "kalman.loop", "kalman.long")}
+apart = {part: {kind: statistics.mean(j["nees"][kind]["mean"] / j["nees"][kind]["dimension"] for j in results[part])
+                for kind in ("tilt", "velocity", "place")} for part in nees}
 grows = all(j["heading_deviation_rad"]["to"] > j["heading_deviation_rad"]["from"] > 0
             for part in nees for j in results[part])
 gaps = sum(j["without_state"] for part in results for j in results[part])
@@ -146,6 +148,8 @@ finish(f"motion_capture {w['mocap rms']:.1f} mrad rms, {w['mocap max']:.1f} max 
        f"0.5 s without any {w['mocap.loss max']:.1f}, CoM {w['mocap com']:.1f} mm/s (loop {w['mocap.loop com']:.1f}); "
        f"contact_kalman tilt {w['kalman tilt']:.1f} mrad (loop {w['kalman.loop tilt']:.1f}, 10 min "
        f"{w['kalman.long tilt']:.1f}), bias {w['kalman bias']:.4f} deg/s (loop {w['kalman.loop bias']:.4f}), NEES "
-       f"{nees['kalman']:.2f} of its dimension (loop {nees['kalman.loop']:.2f}, 10 min {nees['kalman.long']:.2f}), yaw's "
+       f"{nees['kalman']:.2f} of its dimension (loop {nees['kalman.loop']:.2f}, 10 min {nees['kalman.long']:.2f}; in the loop tilt "
+       f"{apart['kalman.loop']['tilt']:.2f}, velocity {apart['kalman.loop']['velocity']:.2f}, place "
+       f"{apart['kalman.loop']['place']:.2f}), yaw's "
        f"deviation {'grows' if grows else 'does NOT grow'}" + (f"; MISSED: {', '.join(failed)}" if failed else ""),
        not failed, not failed and all(worst[name] <= must / 2 for name, _, must in BARS))
