@@ -39,16 +39,18 @@ class SensorWatchTest : public testing::Test {
     const auto t = static_cast<double>(tick_);
     sensors_.time_ns = tick_ * 1'000'000;
     sensors_.gyro = {t, 0.0, 0.0};
-    sensors_.accelerometer = {0.0, 0.0, 9.81};
+    sensors_.accelerometer = {0.0, 0.0, 9.81 + 1e-3 * t};
     for (std::size_t m = 0; m < 4; ++m) {
       sensors_.marker[m] = {t, 0.1 * static_cast<double>(m), 1.0};
       sensors_.marker_seen[m] = true;
     }
     sensors_.imu_fresh = sensors_.mocap_fresh = true;
-    sensors_.q = {};
+    sensors_.q = {1e-3 * t, 0.0};
     if (change) change(sensors_);
     const SensorFindings found = watch_->check(sensors_, fresh);
     watch_->used(used_);
+    commands_.tau[0] += driven_ ? 1.0 : 0.0;
+    watch_->commanded(commands_);
     return found;
   }
   // Ticks with this change until the finding, at most 100.
@@ -64,6 +66,8 @@ class SensorWatchTest : public testing::Test {
   hal::Sensors sensors_;
   std::int64_t tick_ = 0;
   int used_ = 4;  // markers by the estimator
+  hal::Commands commands_;
+  bool driven_ = true;  // commands change in every tick
 };
 
 TEST_F(SensorWatchTest, DataThatAreNotNewAreStaleBeyondTheLimitForEveryEstimator) {
@@ -90,7 +94,10 @@ TEST_F(SensorWatchTest, FramesMayComeAtALowerRateThanTicks) {
 }
 
 TEST_F(SensorWatchTest, AFrozenImuIsStaleWhereItIsNeeded) {
-  const auto freeze = [](hal::Sensors& s) { s.gyro = {1.0, 0.0, 0.0}; };
+  const auto freeze = [](hal::Sensors& s) {
+    s.gyro = {1.0, 0.0, 0.0};
+    s.accelerometer = {0.0, 0.0, 9.81};
+  };
   watch(EstimatorType::motion_capture);
   tick(), tick();
   EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), 7);  // the first one differs
@@ -101,7 +108,10 @@ TEST_F(SensorWatchTest, AFrozenImuIsStaleWhereItIsNeeded) {
 
 // Perfect ones of a simulator at rest never change; a real one that does not is dead.
 TEST_F(SensorWatchTest, AnImuThatHasNeverMovedIsFrozenUnlessItIsPerfect) {
-  const auto rest = [](hal::Sensors& s) { s.gyro = {0.0, 0.0, 0.0}; };
+  const auto rest = [](hal::Sensors& s) {
+    s.gyro = {};
+    s.accelerometer = {0.0, 0.0, 9.81};
+  };
   watch(EstimatorType::contact_kalman);
   sensors_.has_truth = true;
   EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), -1);
@@ -132,14 +142,111 @@ TEST_F(SensorWatchTest, TheEstimatorDoesNotGetAFrameTwice) {
   EXPECT_TRUE(watch_->usable().mocap_fresh);
 }
 
-TEST_F(SensorWatchTest, AGyroscopeAtRestIsNotFrozenWhileTheAccelerometerMoves) {
+// Two real sensors do not fail together; a simulated gyroscope without errors may rest for ever
+// beside an accelerometer with errors.
+TEST_F(SensorWatchTest, AGyroscopeThatIsFrozenBesideAMovingAccelerometerIsStaleAndViceVersa) {
+  const auto gyro = [](hal::Sensors& s) { s.gyro = {}; };
+  const auto accelerometer = [](hal::Sensors& s) { s.accelerometer = {0.0, 0.0, 9.81}; };
+  for (const auto& freeze : {std::function<void(hal::Sensors&)>(gyro),
+                             std::function<void(hal::Sensors&)>(accelerometer)}) {
+    sensors_.has_truth = sensors_.sensor_truth = false;
+    watch(EstimatorType::contact_kalman);
+    tick(), tick();
+    EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), 7);  // the first one differs
+    sensors_.has_truth = sensors_.sensor_truth = true;
+    watch(EstimatorType::contact_kalman);
+    EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), -1);  // it has never moved
+    tick(), tick();
+    EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), 7);
+    watch(EstimatorType::true_state);
+    tick(), tick();
+    EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), -1);
+  }
+}
+
+TEST_F(SensorWatchTest, JointsThatRepeatToTheLastBitWhileTheyAreDrivenAreStale) {
+  const auto freeze = [](hal::Sensors& s) { s.q = {}; };
   watch(EstimatorType::contact_kalman);
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale,
-                        [this](hal::Sensors& s) {
-                          s.gyro = {};
-                          s.accelerometer[2] = 9.81 + 1e-3 * static_cast<double>(tick_ % 2);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::joints_stale, freeze), 7);  // the first one differs
+  EXPECT_FALSE(tick().joints_stale);
+  watch(EstimatorType::true_state);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::joints_stale, freeze), -1);
+}
+
+TEST_F(SensorWatchTest, JointsOfWhichOneNumberMovesAreNotFrozen) {
+  watch(EstimatorType::contact_kalman);
+  for (const auto field : {&hal::Sensors::q, &hal::Sensors::tau, &hal::Sensors::motor}) {
+    EXPECT_EQ(ticks_until(&SensorFindings::joints_stale,
+                          [&](hal::Sensors& s) {
+                            s.q = {};
+                            (s.*field)[1] = static_cast<double>(tick_ % 2);
+                          }),
+              -1);
+  }
+}
+
+// Within the resolution of their encoders, or of a simulator that never moved them.
+TEST_F(SensorWatchTest, JointsAtRestAreNotFrozen) {
+  const auto rest = [](hal::Sensors& s) { s.q = {}; };
+  watch(EstimatorType::contact_kalman);
+  tick(), tick();
+  driven_ = false;
+  EXPECT_EQ(ticks_until(&SensorFindings::joints_stale, rest), -1);
+  driven_ = true;
+  sensors_.has_truth = true;
+  watch(EstimatorType::contact_kalman);
+  EXPECT_EQ(ticks_until(&SensorFindings::joints_stale, rest), -1);
+}
+
+TEST_F(SensorWatchTest, AMarkerThatRepeatsWhileOthersMoveIsNotSeen) {
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale,
+                        [](hal::Sensors& s) {
+                          s.marker[2] = {1, 2, 3};
                         }),
             -1);
+  const hal::Sensors& given = watch_->usable();
+  EXPECT_TRUE(given.mocap_fresh);
+  EXPECT_FALSE(given.marker_seen[2]);
+  EXPECT_TRUE(given.marker_seen[0] && given.marker_seen[1] && given.marker_seen[3]);
+  EXPECT_EQ(given.marker[0], sensors_.marker[0]);
+  tick();
+  EXPECT_EQ(&watch_->usable(), &sensors_);
+}
+
+// Two that move could be the noise of a robot at rest: it takes the limit to tell, and as long for
+// the fault.
+TEST_F(SensorWatchTest, FramesInWhichTooFewMarkersMoveAreStale) {
+  const auto freeze = [](hal::Sensors& s) { s.marker[2] = s.marker[3] = {1.0, 2.0, 3.0}; };
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, freeze), 1 + 10 + 11);
+  EXPECT_FALSE(watch_->usable().marker_seen[2] || watch_->usable().marker_seen[3]);
+  sensors_.has_truth = true;  // perfect ones may repeat
+  watch(EstimatorType::motion_capture);
+  tick(), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, freeze), -1);
+}
+
+TEST_F(SensorWatchTest, AReadThatBringsNothingGivesNothingNew) {
+  watch(EstimatorType::contact_kalman);
+  tick();
+  EXPECT_TRUE(watch_->joints_new());
+  for (int k = 0; k < 3; ++k) {
+    tick(nullptr, false);
+    const hal::Sensors& given = watch_->usable();
+    EXPECT_FALSE(given.imu_fresh || given.mocap_fresh || watch_->joints_new());
+    EXPECT_EQ(given.q[0], 2e-3);  // of the first of these reads
+  }
+  tick([](hal::Sensors& s) { s.qd[1] = kNan; });
+  EXPECT_FALSE(watch_->joints_new());
+  EXPECT_TRUE(watch_->usable().imu_fresh);
+  tick([](hal::Sensors& s) { s.qd[1] = 0.0; });
+  EXPECT_TRUE(watch_->joints_new());
+  EXPECT_EQ(&watch_->usable(), &sensors_);
 }
 
 TEST_F(SensorWatchTest, FramesThatRepeatOrShowTooFewMarkersAreStaleWhereTheyAreNeeded) {
@@ -215,17 +322,28 @@ TEST_F(SensorWatchTest, AnEstimatorGetsTheLastGoodValueInsteadOfOneThatIsNotFini
   EXPECT_EQ(&watch_->usable(), &sensors_);
 }
 
+// Torques and motors give the joints' positions, whatever tells the contacts.
+TEST_F(SensorWatchTest, AnEstimatorThatMeasuresUsesTorquesAndMotors) {
+  for (const auto field : {&hal::Sensors::tau, &hal::Sensors::motor}) {
+    for (const auto contact :
+         {behaviors::ContactSource::switches, behaviors::ContactSource::torque}) {
+      watch(EstimatorType::contact_kalman, contact);
+      tick([&](hal::Sensors& s) { (s.*field)[0] = 0.5; });
+      EXPECT_TRUE(tick([&](hal::Sensors& s) { (s.*field)[0] = kNan; }).infinite);
+      EXPECT_EQ((watch_->usable().*field)[0], 0.5);
+      (sensors_.*field)[0] = 0.0;
+    }
+  }
+}
+
 TEST_F(SensorWatchTest, WhatTheEstimatorDoesNotUseMayBeAnything) {
-  const auto spoil = [](hal::Sensors& s) {
-    s.tau[0] = s.marker[0][1] = kNan;
-    s.q[core::kMaxJoints - 1] = kNan;  // of no joint
-  };
   watch(EstimatorType::contact_kalman);
-  EXPECT_FALSE(tick(spoil).infinite);
-  watch(EstimatorType::contact_kalman, behaviors::ContactSource::torque);
-  EXPECT_TRUE(tick(spoil).infinite);
+  EXPECT_FALSE(tick([](hal::Sensors& s) {
+                 s.marker[0][1] = s.motor_torque[0] = kNan;
+                 s.q[core::kMaxJoints - 1] = kNan;  // of no joint
+               }).infinite);
   watch(EstimatorType::true_state);
-  EXPECT_FALSE(tick([](hal::Sensors& s) { s.gyro[0] = kNan; }).infinite);
+  EXPECT_FALSE(tick([](hal::Sensors& s) { s.gyro[0] = s.tau[0] = s.motor[0] = kNan; }).infinite);
 }
 
 TEST_F(SensorWatchTest, GoesOnFromAnotherWatch) {
@@ -255,10 +373,16 @@ TEST(SensorWatchFaults, EachFindingIsAFault) {
   engine::SafetyFilter filter(behavior->robot);
   engine::TickStart tick;
   EXPECT_FALSE(filter.check_state({}, tick, model).has(core::Fault::sensor_nan));
-  tick.sensed = {.imu_stale = true, .mocap_stale = true, .clock = true, .infinite = true};
+  EXPECT_FALSE(filter.check_state({}, tick, model).has(core::Fault::sensor_stale));
+  tick.sensed = {.imu_stale = true,
+                 .mocap_stale = true,
+                 .joints_stale = true,
+                 .clock = true,
+                 .infinite = true};
   const engine::FaultFindings found = filter.check_state({}, tick, model);
-  for (const auto fault : {core::Fault::imu_stale, core::Fault::mocap_stale,
-                           core::Fault::sensor_clock, core::Fault::sensor_nan}) {
+  for (const auto fault :
+       {core::Fault::imu_stale, core::Fault::mocap_stale, core::Fault::sensor_stale,
+        core::Fault::sensor_clock, core::Fault::sensor_nan}) {
     EXPECT_TRUE(found.has(fault));
   }
 }
