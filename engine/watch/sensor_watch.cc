@@ -41,7 +41,8 @@ SensorWatch::SensorWatch(const behaviors::EstimatorSpec& spec, const model::Robo
       joint_count_(robot.joints.size()),
       period_ns_(std::llround(robot.period_s() * 1e9)),
       imu_limit_(ticks_of(robot.imu_age, robot)),
-      mocap_limit_(ticks_of(robot.mocap_age, robot)) {}
+      mocap_limit_(ticks_of(robot.mocap_age, robot)),
+      torque_step_(robot.torque_step_limit) {}
 
 SensorFindings SensorWatch::check(const hal::Sensors& sensors, bool fresh) noexcept {
   SensorFindings findings;
@@ -83,7 +84,6 @@ void SensorWatch::watch_clock(const hal::Sensors& sensors, SensorFindings& findi
   started_ = true;
 }
 
-// Joints at rest may repeat for any time where nothing drives them.
 void SensorWatch::watch_joints(const hal::Sensors& sensors) noexcept {
   if (!needs_state_) return;
   const auto repeats = [&](const auto& now, const auto& before) {
@@ -93,24 +93,29 @@ void SensorWatch::watch_joints(const hal::Sensors& sensors) noexcept {
   joints_.next(repeats(sensors.q, last_.q) && repeats(sensors.motor, last_.motor) &&
                    repeats(sensors.tau, last_.tau),
                !is_perfect(sensors));
+  if (joints_.repeated) return;
+  commands_at_change_ = commands_;
+  driven_ = false;
 }
 
 void SensorWatch::commanded(const hal::Commands& commands) noexcept {
-  driven_ = !same(std::span(commands.tau).first(joint_count_),
-                  std::span(commands_.tau).first(joint_count_));
+  for (std::size_t j = 0; j < joint_count_; ++j) {
+    driven_ = driven_ || std::abs(commands.tau[j] - commands_at_change_.tau[j]) > torque_step_;
+  }
   commands_ = commands;
 }
 
-// Of a real IMU, or one with errors, two samples never agree to the last bit; one of the two
-// sensors of a simulated one may be perfect.
+// Of a real IMU, or one with errors, two samples never agree to the last bit. Of a simulated one a
+// sensor may be without errors beside one with some: it moves by whole counts until it rests.
 void SensorWatch::watch_imu(const hal::Sensors& sensors) noexcept {
   if (!sensors.imu_fresh) return;
   imu_ticks_ = 0;
   const bool gyro = same(sensors.gyro, last_.gyro);
   const bool accelerometer = same(sensors.accelerometer, last_.accelerometer);
   imu_.next(gyro && accelerometer, !is_perfect(sensors));
-  gyro_.next(gyro, !sensors.has_truth);
-  accelerometer_.next(accelerometer, !sensors.has_truth);
+  const std::int64_t rest = sensors.has_truth ? imu_limit_ : 0;
+  gyro_.next(gyro, !sensors.has_truth, rest);
+  accelerometer_.next(accelerometer, !sensors.has_truth, rest);
   last_.gyro = sensors.gyro;
   last_.accelerometer = sensors.accelerometer;
 }
@@ -229,6 +234,7 @@ void SensorWatch::take_over(const SensorWatch& old) noexcept {
   mocap_known_ = old.needs_mocap_ && old.mocap_known_;
   marker_ticks_ = old.marker_ticks_;
   commands_ = old.commands_;
+  commands_at_change_ = old.commands_at_change_;
   driven_ = old.driven_;
   last_ = old.last_;
 }

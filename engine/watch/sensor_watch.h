@@ -20,12 +20,16 @@ struct SensorFindings {
 
 // For how long something that is said to be new has been the same to the last bit.
 struct Repeats {
-  bool known = false, moved = false;
+  bool known = false, moved = false, repeated = false, rests = false;
   std::int64_t ticks = 0;  // counted outside
-  // `dead`: what has never moved is frozen, too.
-  void next(bool same, bool dead) noexcept {
+  // `dead`: what has never moved is frozen, too. What has repeated for up to `rest` ticks and went
+  // on may rest within its resolution: it is never frozen.
+  void next(bool same, bool dead, std::int64_t rest = 0) noexcept {
+    same = same && known;
+    rests = rests || (!same && repeated && ticks <= rest);
+    repeated = same;
     moved = moved || (known && (!same || dead));
-    if (!known || !same || !moved) ticks = 0;
+    if (!same || !moved || rests) ticks = 0;
     known = true;
   }
 };
@@ -37,8 +41,10 @@ struct Repeats {
 // clock that stands still is told only if it has moved before: a backend may have none. Likewise
 // perfect sensors: at rest they never change.
 //
-// Gyroscope and accelerometer are judged apart and together. Joints (angles, motors, torques) are
-// frozen if none of them changes in as many ticks as an IMU may, of those whose commands do.
+// Gyroscope and accelerometer are judged apart and together; apart, one of a simulator may rest.
+// Joints (angles, motors, torques) are frozen if none of them changes for as long as an IMU may,
+// from when a command is off by more than the robot's limit torque_step from what it was when one
+// did: within their resolution they may rest for any time.
 //
 // A read that brings nothing at all is another fault, too, sensor.stale: the ages grow in it.
 class SensorWatch {
@@ -82,8 +88,9 @@ class SensorWatch {
   bool mocap_moved_ = false, clock_moved_ = false, started_ = false, mocap_known_ = false;
   Repeats joints_, imu_, gyro_, accelerometer_;
   std::array<std::int64_t, core::kMaxMarkers> marker_ticks_{};
-  hal::Commands commands_;
-  bool driven_ = false;    // the last tick's commands differ from those before
+  double torque_step_;                           // N m
+  hal::Commands commands_, commands_at_change_;  // of the last tick; when joints changed
+  bool driven_ = false;                          // commands have moved since joints did
   hal::Sensors last_;      // fresh ones, all values finite: of each group the last good ones
   hal::Sensors repaired_;  // what usable() gives while it is not the sensors
   bool spoiled_ = false;   // values are not finite: repaired_ has the last read

@@ -156,6 +156,7 @@ TEST_F(SensorWatchTest, AGyroscopeThatIsFrozenBesideAMovingAccelerometerIsStaleA
     sensors_.has_truth = sensors_.sensor_truth = true;
     watch(EstimatorType::contact_kalman);
     EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), -1);  // it has never moved
+    watch(EstimatorType::contact_kalman);
     tick(), tick();
     EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), 7);
     watch(EstimatorType::true_state);
@@ -185,6 +186,29 @@ TEST_F(SensorWatchTest, JointsOfWhichOneNumberMovesAreNotFrozen) {
                           }),
               -1);
   }
+}
+
+// As long as torques on them stay within what the robot calls a step.
+TEST_F(SensorWatchTest, JointsAreFrozenFromATorqueOnThatMovesNone) {
+  robot_.torque_step_limit = 3.5;
+  watch(EstimatorType::contact_kalman);
+  tick(), tick();
+  // The first one differs, and the fourth that repeats follows a command that is off by 4.
+  EXPECT_EQ(ticks_until(&SensorFindings::joints_stale, [](hal::Sensors& s) { s.q = {}; }),
+            1 + 3 + 6);
+}
+
+// It moves by whole counts until it rests: the first short rest tells that it has a resolution.
+TEST_F(SensorWatchTest, ASimulatedAccelerometerWithoutErrorsMayRestBesideAGyroscopeWithErrors) {
+  const auto rest = [](hal::Sensors& s) { s.accelerometer = {0.0, 0.0, 9.81}; };
+  sensors_.has_truth = sensors_.sensor_truth = true;
+  watch(EstimatorType::contact_kalman);
+  tick(), tick(rest), tick(rest), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), -1);
+  sensors_.has_truth = sensors_.sensor_truth = false;
+  watch(EstimatorType::contact_kalman);
+  tick(), tick(rest), tick(rest), tick();
+  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), 7);
 }
 
 // Within the resolution of their encoders, or of a simulator that never moved them.
