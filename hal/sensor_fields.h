@@ -26,9 +26,10 @@ struct Sensors {
   std::array<bool, core::kMaxContacts> contact{};                 // foot switch closed
   std::array<std::array<double, 3>, core::kMaxContacts> force{};  // N, ground on robot, world
 
-  // Of series-elastic actuators, seen from the joint; else 0.
+  // Of series-elastic actuators, seen from the joint; else 0, and `has_motors` is false.
   std::array<double, core::kMaxJoints> motor{};         // motor angle, rad
   std::array<double, core::kMaxJoints> motor_torque{};  // N m, mean since the last tick
+  bool has_motors = false;                              // the two above are reported
 
   bool imu_fresh = true;    // new IMU data arrived
   bool mocap_fresh = true;  // a frame of motion capture arrived: the three members below are new
@@ -148,6 +149,8 @@ inline constexpr std::tuple kFlagFields{
     FlagField{&Sensors::contact, 256, "contact c is closed", SensorGroup::contacts},
     FlagField{&Sensors::marker_seen, std::uint64_t{1} << 40U, "marker m is seen",
               SensorGroup::mocap},
+    FlagField{&Sensors::has_motors, std::uint64_t{1} << 56U, "the joints' motors are reported",
+              SensorGroup::joints},
 };
 
 // Calls visit(field) for each row of a table.

@@ -75,6 +75,7 @@ Footholds::Footholds(mjModel_& m, const WorldDescription& world, std::span<const
 }
 
 void Footholds::start(mjModel_& model) {
+  drawn_ = 0;
   for (std::size_t c = 0; c < footholds_.size(); ++c) {
     footholds_[c].noise =
         hal::NoiseStream(seed_, hal::NoiseSource::footholds, static_cast<std::uint32_t>(c));
@@ -119,6 +120,7 @@ void Footholds::update(mjModel_& model, const mjData_& data) noexcept {
   for (Foothold& f : footholds_) {
     if (!f.touched || !is_clear(model, data, f.ball)) continue;
     f.touched = false;
+    ++drawn_;
     move(model, f, error_ * (2.0 * f.noise.uniform() - 1.0));
   }
 }

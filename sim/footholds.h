@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ class Footholds {
   void start(mjModel_& model);
   // After a tick's physics. No allocation.
   void update(mjModel_& model, const mjData_& data) noexcept;
+  // How often a foot got another height since the start; one that swings low keeps its own.
+  std::int64_t drawn() const noexcept { return drawn_; }
   double height(int contact) const { return footholds_[static_cast<std::size_t>(contact)].height; }
 
  private:
@@ -47,6 +50,7 @@ class Footholds {
   std::vector<TerrainBox> terrain_;
   std::vector<double> heights_;  // m, of the pieces' centres without error
   std::vector<Foothold> footholds_;
+  std::int64_t drawn_ = 0;
 };
 
 }  // namespace footfall::sim

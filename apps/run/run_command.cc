@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/log/report_command.h"
+#include "apps/run/first_state.h"
 #include "apps/run/run_options.h"
 #include "apps/run/run_reload.h"
 #include "apps/run/run_setup.h"
@@ -198,7 +199,9 @@ int run_behavior(RunOptions options) {
   LiveFiles live = watch_files(options, loop, *backend.hardware, world, physics, spec);
   spec.reloads = live.reloads.get();
 
-  const lab::RunResult result = lab::run(loop, spec);
+  const lab::RunResult result =
+      from_first_state(*behavior, world, [&] { return lab::run(loop, spec); });
+  id.footholds = drawn_footholds(backend);
   live.watch.reset();
   if (live.reloads) live.reloads->close();
   if (spec.status) std::fputs("\r\033[K", stderr);

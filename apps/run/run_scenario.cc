@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/log/report_command.h"
+#include "apps/run/first_state.h"
 #include "apps/run/run_setup.h"
 #include "apps/run/stub_setup.h"
 #include "apps/run/world_settings.h"
@@ -155,10 +156,13 @@ int run_scenario_file(RunOptions options) {
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();
   const bool status = spec.status != nullptr;
-  lab::ScenarioRun done = lab::run_scenario(scenario, options.seed, loop, hooks, std::move(spec));
+  lab::ScenarioRun done = from_first_state(behavior, world, [&] {
+    return lab::run_scenario(scenario, options.seed, loop, hooks, std::move(spec));
+  });
   if (status) std::fputs("\r\033[K", stderr);
   done.outcome.log = id.log;
   id.constraints = aids;
+  id.footholds = drawn_footholds(backend);
   if (log) {
     log->close();
     write_results(options, scenario, id, done);

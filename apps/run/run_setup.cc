@@ -170,6 +170,11 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
   return backend;
 }
 
+std::optional<std::int64_t> drawn_footholds(const Backend& backend) {
+  const sim::Footholds* footholds = backend.mujoco ? backend.mujoco->footholds() : nullptr;
+  return footholds ? std::optional(footholds->drawn()) : std::nullopt;
+}
+
 lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavior& behavior,
                              const sim::WorldDescription& world, const hal::Hardware& sensors,
                              const Backend& backend, const model::Draw& drawn) {

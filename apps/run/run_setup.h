@@ -51,6 +51,8 @@ void schedule_push(const model::Draw& drawn, const Backend& backend,
                    const behaviors::Behavior& behavior, lab::RunSpec& spec);
 Backend make_backend(const RunOptions& options, const behaviors::Behavior& behavior,
                      const sim::WorldDescription& world);
+// After the run: how often a foot got another height of the ground; nothing in a world without.
+std::optional<std::int64_t> drawn_footholds(const Backend& backend);
 // What the summary says the run was; its log comes later.
 lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavior& behavior,
                              const sim::WorldDescription& world, const hal::Hardware& sensors,

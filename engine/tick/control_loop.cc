@@ -2,8 +2,8 @@
 #include "engine/tick/control_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
-#include <stdexcept>
 
 #include "behaviors/compiled/control_set.h"
 #include "behaviors/language/estimators.h"
@@ -16,6 +16,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
     : behavior_(behavior),
       hardware_(hardware),
       period_(behavior.robot.period_s()),
+      waits_(settings.waits),
       signals_(behavior.signals),
       model_(behavior.robot, settings.deviation),
       machine_(std::make_unique<behaviors::Machine>(behavior, signals_, &model_)),
@@ -36,12 +37,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
 
 void ControlLoop::start() {
   hardware_.start();
-  sense();
-  std::copy_n(sensors_.q.begin(), model_.joint_count(), estimate_.state.q.begin());
-  model_.update(estimate_.state);
-  if (!estimate_state(sensors_)) {
-    throw std::runtime_error(no_state());
-  }
+  find_state();
   model_.update(estimate_.state);
   writer_.write_measured(time(), model_, sensors_, estimate_);
   writer_.leave_gaps();
@@ -49,15 +45,30 @@ void ControlLoop::start() {
   outside_.start(*machine_);
 }
 
-// Why there is no state at the start, in one sentence.
-std::string ControlLoop::no_state() const {
+// Each read begins anew with an estimator that has seen nothing: a replay has the last one only.
+void ControlLoop::find_state() {
   const behaviors::EstimatorInfo& info = behaviors::estimator_info(behavior_.estimator.type);
+  const double limit = waits_ && info.needs_mocap ? behavior_.robot.mocap_age : 0.0;
+  const std::int64_t reads = 1 + std::llround(limit / period_);
+  std::int64_t most = 0;  // markers
+  for (std::int64_t k = 0; k < reads; ++k) {
+    if (k > 0) estimator_ = make_estimator(behavior_.estimator, behavior_.robot, model_);
+    sense();
+    estimate_ = {};
+    std::copy_n(sensors_.q.begin(), model_.joint_count(), estimate_.state.q.begin());
+    model_.update(estimate_.state);
+    if (estimate_state(sensors_)) return;
+    most = std::max(most, std::ranges::count(sensors_.marker_seen, true));
+  }
   std::string text = "no state at the start: the first data of the backend '" + hardware_.name() +
                      "' do not give the estimator '" + std::string(info.name) + "' one";
-  if (!info.needs_mocap) return text;
-  const auto& seen = sensors_.marker_seen;
-  return text + " (motion capture sees " + std::to_string(std::ranges::count(seen, true)) +
-         " markers, at least 3 are needed)";
+  constexpr std::int64_t kEnough = 3;  // markers for an attitude
+  const bool few = info.needs_mocap && most < kEnough;
+  if (few) {
+    text += " (in " + std::to_string(reads) + " reads motion capture sees " + std::to_string(most) +
+            " markers at most, 3 are needed)";
+  }
+  throw NoState(text, few);
 }
 
 bool ControlLoop::estimate_state(const hal::Sensors& sensors) noexcept {
@@ -107,6 +118,7 @@ void ControlLoop::compute() noexcept {
   faults_.take(swings_.check(machine_->control_spec(), estimate_.contact, machine_->stepping()),
                *machine_);
   faults_.take(safety_.filter(commands_, outside_.limit_steps()), *machine_);
+  watch_.commanded(commands_);
   writer_.write_control(*machine_, controller_.result(), commands_, safety_.torque_step(),
                         faults_.counters());
 }

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "behaviors/machine/machine.h"
 #include "core/fault.h"
@@ -32,6 +34,16 @@ enum class ValueChange : std::uint8_t {
   at_once,  // back to what was known to be good
 };
 
+// The estimator finds no state at the start: why, in one sentence.
+class NoState : public std::runtime_error {
+ public:
+  NoState(const std::string& why, bool markers) : runtime_error(why), markers_(markers) {}
+  bool markers() const noexcept { return markers_; }  // motion capture saw too few
+
+ private:
+  bool markers_;
+};
+
 class ControlLoop {
  public:
   // Builds everything for the worst case. Throws std::runtime_error with one clear sentence
@@ -40,8 +52,9 @@ class ControlLoop {
               const LoopSettings& settings);
 
   // Starts the hardware, reads it once and enters the behavior's initial state; once in a loop's
-  // life (integrals, fault counters and parameters are those of one run). Throws what the hardware
-  // throws, and std::runtime_error if the estimator cannot give a state.
+  // life (integrals, fault counters and parameters are those of one run). An estimator that needs
+  // motion capture gets more reads, without commands in between, until a frame shows enough
+  // markers: for the robot's limit mocap_age at most. Throws what the hardware throws, and NoState.
   void start();
 
   // The parts of a tick, so that a caller can time control apart from the backend. Allocate
@@ -110,12 +123,13 @@ class ControlLoop {
   void safe_stop() noexcept;
 
  private:
-  std::string no_state() const;
+  void find_state();
   bool estimate_state(const hal::Sensors& sensors) noexcept;
 
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
   double period_;
+  bool waits_;
   std::int64_t tick_ = 0;
   core::SignalTable signals_;
   model::ControlModel model_;

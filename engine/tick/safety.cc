@@ -37,7 +37,7 @@ void SafetyFilter::check_swings(const TickStart& tick, FaultFindings& findings) 
 FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, const TickStart& tick,
                                         const model::ControlModel& model) noexcept {
   FaultFindings findings;
-  if (!tick.fresh) findings.add(Fault::sensor_stale);
+  if (!tick.fresh || tick.sensed.joints_stale) findings.add(Fault::sensor_stale);
   if (!tick.estimated) findings.add(Fault::no_estimate);
   check_swings(tick, findings);
   if (sensors.backend_fault) findings.add(Fault::simulator_warning);

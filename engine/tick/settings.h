@@ -14,6 +14,7 @@ struct LoopSettings {
   double planner_latency = 2e-3;    // s, lock-step
   bool lockstep = true;             // the caller's clock waits for what other threads compute
   behaviors::ScriptAccess script_access;
+  bool waits = true;             // for a first state; false: a replay, whose log begins with it
   bool run_scripts = true;       // false: a replay, which has their answers
   std::uint64_t seed = 0;        // of the scripts' random numbers
   model::HeightSurface surface;  // of the world, for references that follow it

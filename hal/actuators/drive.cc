@@ -181,6 +181,7 @@ void SeriesElasticDrive::sample() noexcept {
 
 void SeriesElasticDrive::read(Sensors& sensors) noexcept {
   sample();
+  sensors.has_motors = true;
   sensors.motor_saturated = false;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const DriveMeasurement& measured = joints_[j].measured;

@@ -80,7 +80,7 @@ std::vector<int> slot_map(const Log& log, const behaviors::Behavior& behavior) {
 
 engine::LoopSettings replay_settings(const RunSetup& setup) {
   engine::LoopSettings settings = setup.settings;
-  settings.run_scripts = false;
+  settings.run_scripts = settings.waits = false;
   return settings;
 }
 

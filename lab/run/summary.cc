@@ -280,6 +280,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["not_reached"] = result.not_reached;
   out["variation"] = variation_json(id);
   out["constraints"] = id.constraints;
+  out["footholds"] = id.footholds ? Json(*id.footholds) : Json();
   out["log_lost_ticks"] = result.log_lost;
   if (!physics_only) {
     out["tick_us"] = tick_json(result.tick_time);
@@ -350,6 +351,9 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   if (!id.variation.empty()) text += variation_text(id, result);
   if (!id.constraints.empty()) {
     text += fmt::format("  AIDED        by {}\n", fmt::join(id.constraints, ", "));
+  }
+  if (id.footholds) {
+    text += fmt::format("  footholds    {} with a height drawn anew\n", *id.footholds);
   }
   text += fmt::format("  estimator    {}\n", id.estimator);
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);

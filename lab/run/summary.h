@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,8 @@ struct RunIdentity {
   // External aids: names of the world's constraints, and `hold of BODY` of a scenario.
   std::vector<std::string> constraints{};
   std::string estimator = "true_state";  // by the name of its type
+  // Where the world has errors of the ground's height: how often a foot got another one.
+  std::optional<std::int64_t> footholds{};
 };
 // {NAME: number or list}
 nlohmann::ordered_json variation_json(const RunIdentity& id);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <string_view>
 
 #include "core/yaml/value_reader.h"
@@ -17,11 +16,21 @@ namespace {
 using core::Diagnostics;
 using core::YamlNode;
 
-constexpr double kAnyError = std::numeric_limits<double>::infinity();
-constexpr double kLongestWait = 1.0;  // s, of a report
+struct InertialBounds {
+  double noise, bias, walk;
+};
+
+// Far beyond every real sensor: a larger number is a unit or an exponent gone wrong.
+constexpr double kLargestCount = 0.1;                              // rad, of an encoder
+constexpr InertialBounds kGyroBounds{10.0, 1.0, 1.0};              // rad/s
+constexpr InertialBounds kAccelerometerBounds{100.0, 10.0, 10.0};  // m/s^2
+constexpr double kLargestMiss = 0.1;                               // m, of a marker
+constexpr double kMostLost = 0.99;                                 // of what motion capture sees
+constexpr double kLargestThreshold = 1e4;                          // N, of a foot switch
+constexpr double kLongestWait = 1.0;                               // s, of a report
 constexpr double kLargestTurn = 0.1;  // rad, three of them are still a small rotation
 constexpr double kFastestFrames = 1e4, kSlowestFrames = 1e-2;  // Hz
-constexpr double kShortestSpell = 1e-6, kLongestSpell = 1e6;   // s
+constexpr double kShortestSpell = 1e-6, kLongestSpell = 1e3;   // s
 
 struct ErrorKey {
   std::string_view name;
@@ -57,11 +66,12 @@ class SensorReader {
   }
 
   void inertial(const YamlNode& node, const std::string& name, const core::KeyTable& table,
-                core::Dimension dimension, std::string_view what, hal::InertialErrors& out) {
+                core::Dimension dimension, std::string_view what, const InertialBounds& most,
+                hal::InertialErrors& out) {
     section(node, name, table,
-            {{"noise", dimension, 0.0, kAnyError, &out.noise, what},
-             {"bias", dimension, 0.0, kAnyError, &out.bias, what},
-             {"walk", dimension, 0.0, kAnyError, &out.walk, what}});
+            {{"noise", dimension, 0.0, most.noise, &out.noise, what},
+             {"bias", dimension, 0.0, most.bias, &out.bias, what},
+             {"walk", dimension, 0.0, most.walk, &out.walk, what}});
   }
 
   // Values of one file that nothing depends on; over those of a base they may stay.
@@ -102,11 +112,13 @@ void read_sensors(const YamlNode& node, SensorSettings& sensors, Diagnostics& di
   core::check_keys(node, kWorldSensorsKeys, diagnostics);
   SensorReader reader(sensors, diagnostics);
   hal::SensorErrors& errors = sensors.errors;
-  reader.section(node, "joint", kJointSensorKeys,
-                 {{"resolution", core::kNone, 0.0, 1.0, &errors.joint_resolution, "an angle"}});
-  reader.inertial(node, "gyro", kGyroKeys, core::kRate, "an angular velocity", errors.imu.gyro);
+  reader.section(
+      node, "joint", kJointSensorKeys,
+      {{"resolution", core::kNone, 0.0, kLargestCount, &errors.joint_resolution, "an angle"}});
+  reader.inertial(node, "gyro", kGyroKeys, core::kRate, "an angular velocity", kGyroBounds,
+                  errors.imu.gyro);
   reader.inertial(node, "accelerometer", kAccelerometerKeys, core::kAcceleration, {},
-                  errors.imu.accelerometer);
+                  kAccelerometerBounds, errors.imu.accelerometer);
   reader.section(node, "imu", kImuSensorKeys,
                  {{"mount", core::kNone, 0.0, kLargestTurn, &errors.imu.mount, "an angle"}});
   hal::MocapErrors& mocap = errors.mocap;
@@ -114,16 +126,16 @@ void read_sensors(const YamlNode& node, SensorSettings& sensors, Diagnostics& di
       node, "mocap", kMocapSensorKeys,
       {{"rate", core::kRate, kSlowestFrames, kFastestFrames, &mocap.rate, "a rate in Hz"},
        {"delay", core::kTime, 0.0, kLongestWait, &mocap.delay},
-       {"noise", core::kLength, 0.0, kAnyError, &mocap.noise},
-       {"occlusion", core::kNone, 0.0, 1.0, &mocap.occlusion},
+       {"noise", core::kLength, 0.0, kLargestMiss, &mocap.noise},
+       {"occlusion", core::kNone, 0.0, kMostLost, &mocap.occlusion},
        {"spell", core::kTime, kShortestSpell, kLongestSpell, &mocap.spell},
-       {"dropped", core::kNone, 0.0, 1.0, &mocap.dropped},
-       {"placement", core::kLength, 0.0, kAnyError, &mocap.placement}});
+       {"dropped", core::kNone, 0.0, kMostLost, &mocap.dropped},
+       {"placement", core::kLength, 0.0, kLargestMiss, &mocap.placement}});
   hal::SwitchErrors& switches = errors.switches;
   reader.section(node, "switch", kSwitchKeys,
                  {{"delay", core::kTime, 0.0, kLongestWait, &switches.delay},
                   {"jitter", core::kTime, 0.0, kLongestWait, &switches.jitter},
-                  {"threshold", core::kForce, 0.0, kAnyError, &switches.threshold},
+                  {"threshold", core::kForce, 0.0, kLargestThreshold, &switches.threshold},
                   {"bounce", core::kTime, 0.0, kLongestWait, &switches.bounce}});
   reader.refuse_idle_values();
 }

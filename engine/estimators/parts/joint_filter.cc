@@ -30,9 +30,10 @@ void JointFilter::update(const hal::Sensors& sensors, bool fresh, double velocit
   const double elapsed = ticks_ * period_;
   const double rate_share = low_pass_share(elapsed, velocity_filter);
   const double offset_share = low_pass_share(elapsed, encoder_time);
-  // Ideal actuators have no motors: all angles are exactly 0.
-  const bool motors = std::any_of(sensors.motor.begin(), sensors.motor.begin() + count_,
-                                  [](double angle) { return angle != 0.0; });
+  // Logs of before the flag say it by angles that are not 0; without motors all are exactly 0.
+  const bool motors =
+      sensors.has_motors || std::any_of(sensors.motor.begin(), sensors.motor.begin() + count_,
+                                        [](double angle) { return angle != 0.0; });
   const bool goes_on = started_ && motors == motors_;
   for (int i = 0; i < count_; ++i) {
     const std::size_t j = at(i);

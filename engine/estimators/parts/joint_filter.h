@@ -7,7 +7,7 @@
 // differ by slowly (play, zero) is taken from the joint's own:
 //   position = q_m + low-pass(q_encoder - q_m; encoder_time)
 //   velocity = low-pass(dq_m / dt; joint_velocity_filter)
-// Without such an actuator, or where the motor is not reported (ideal actuators):
+// Without such an actuator, or where motors are not reported (hal::Sensors::has_motors):
 //   position = q_encoder, velocity = low-pass(qd; joint_velocity_filter).
 #pragma once
 

@@ -119,16 +119,18 @@ std::string time_text(SweepReader& reader, const YamlNode& node, bool positive) 
   return time ? node.scalar : std::string();
 }
 
-SweepFault read_fault(SweepReader& reader, const YamlNode& node) {
+// Nothing for one that is not known: it is like no other.
+std::optional<SweepFault> read_fault(SweepReader& reader, const YamlNode& node) {
   SweepFault fault;
   const YamlNode* word = &node;
   if (node.is_map()) {
     core::check_keys(node, kSweepFaultKeys, reader.diagnostics);
     word = core::require_key(node, "fault", reader.diagnostics);
-    if (word == nullptr) return fault;
+    if (word == nullptr) return std::nullopt;
   }
   const auto index = core::read_choice(*word, kSweepFaults, reader.diagnostics, "a fault");
-  if (!index || *index == 0) return fault;
+  if (!index) return std::nullopt;
+  if (*index == 0) return fault;
   fault.fault = fault.label = word->scalar;
   if (const YamlNode* at = node.find("at")) {
     fault.at = time_text(reader, *at, false);
@@ -147,12 +149,13 @@ void read_faults(SweepReader& reader, const YamlNode& root) {
   if (!core::expect_sequence(*node, "a list of faults", reader.diagnostics)) return;
   reader.sweep.faults.clear();
   for (const YamlNode& item : node->items) {
-    SweepFault fault = read_fault(reader, item);
-    const auto same = [&](const SweepFault& other) { return other.label == fault.label; };
+    std::optional<SweepFault> fault = read_fault(reader, item);
+    if (!fault) continue;
+    const auto same = [&](const SweepFault& other) { return other.label == fault->label; };
     if (std::ranges::any_of(reader.sweep.faults, same)) {
-      reader.diagnostics.error(item.mark, "duplicate", fmt::format("'{}' twice", fault.label));
+      reader.diagnostics.error(item.mark, "duplicate", fmt::format("'{}' twice", fault->label));
     }
-    reader.sweep.faults.push_back(std::move(fault));
+    reader.sweep.faults.push_back(std::move(*fault));
   }
   if (node->items.empty()) {
     reader.diagnostics.error(node->mark, "empty-value",

@@ -152,6 +152,7 @@ TEST(StubBackend, ASpringyJointOnAStandCarriesTheTorqueThatIsAskedFor) {
   }
   EXPECT_NEAR(sensors.tau[0], 40.0, 0.1);
   EXPECT_NEAR(sensors.q[0], 0.1 + 40.0 / 2000.0, 1e-4);
+  EXPECT_TRUE(sensors.has_motors);
   EXPECT_NEAR(sensors.motor[0], sensors.q[0] + 40.0 / kKnee.spring, 1e-3);
   EXPECT_NEAR(sensors.motor_torque[0], 40.0, 0.1);  // at rest the motor carries it all
   EXPECT_NEAR(sensors.q[1], -0.2, 1e-12);

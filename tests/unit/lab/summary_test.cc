@@ -52,6 +52,16 @@ TEST(Summary, HasEveryKeyThatScriptsRelyOn) {
   EXPECT_TRUE(json["faults"].is_object());
 }
 
+TEST(Summary, FootholdsAreToldWhereTheGroundHasErrors) {
+  lab::RunIdentity id;
+  EXPECT_TRUE(lab::summary_json(id, {})["footholds"].is_null());
+  EXPECT_EQ(lab::summary_text(id, {}).find("footholds"), std::string::npos);
+  id.footholds = 3;
+  EXPECT_EQ(lab::summary_json(id, {})["footholds"], 3);
+  EXPECT_NE(lab::summary_text(id, {}).find("  footholds    3 with a height drawn anew\n"),
+            std::string::npos);
+}
+
 TEST(Summary, AnAidedRunNeverLooksUnaided) {
   lab::RunIdentity id;
   EXPECT_EQ(lab::summary_json(id, {})["constraints"], nlohmann::ordered_json::array());

@@ -108,12 +108,19 @@ TEST(SweepPlan, AnythingThatChangesARunChangesTheDigestAndWordsForPeopleDoNot) {
   }
 }
 
+TEST(SweepPlan, AFaultThatIsNotKnownIsNoSecondNone) {
+  const std::string errors = read("faults: [none, imu.freez, {at: 1 s}]").errors;
+  EXPECT_THAT(errors, HasSubstr("did you mean 'imu.freeze'"));
+  EXPECT_THAT(errors, testing::Not(HasSubstr("twice")));
+}
+
 TEST(SweepPlan, MistakesAreReportedAtTheirPlace) {
   const auto says = [](const char* text, const char* words) {
     EXPECT_THAT(read(text).errors, HasSubstr(words)) << text;
   };
   says("vary: {a: []}", "s.yaml:3:11: error: no values");
   says("vary: {a: [1, 1]}", "s.yaml:3:15: error: the value 1 twice");
+  says("faults: [none, none]", "s.yaml:3:16: error: 'none' twice");
   says("vary: {a: {from: 1 s, to: 2 N, count: 2}}", "expected a time, got '2 N'");
   says("vary: {a: {from: 1, to: 2, count: 1}}", "s.yaml:3:35: error:");
   says("zip: {a: [1, 2], b: [1]}", "s.yaml:3:21: error: 1 values beside 2 of 'a'");

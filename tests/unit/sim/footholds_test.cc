@@ -81,6 +81,7 @@ TEST_F(FootholdsTest, HeightsAreUniformAndChangeInTheAirOnly) {
     ASSERT_EQ(height(0), left);
     put(0.5 * kError);  // not clear
     ASSERT_EQ(height(0), left);
+    ASSERT_EQ(backend->footholds()->drawn(), 2 * (step + 1));  // one a foot
     sum += left;
     squares += left * left;
     products += left * right;

@@ -41,6 +41,15 @@ class BadInput(Case):
     def test_missing_file(self):
         self.refused(self.run_it("no/such.yaml"), 2, "no/such.yaml")
 
+    # Of four markers in 200 ms, each seen in a hundredth of the time and hidden for 100 s.
+    def test_a_start_that_motion_capture_never_sees(self):
+        path = self.write("b.yaml", STAND.replace("robot: hume", "robot: hume\nestimator: {type: motion_capture}"))
+        world = self.write("w.yaml", "world: 1\nsensors:\n  mocap: {occlusion: 99 %, spell: 100 s}\n")
+        run = self.footfall("run", path, "--world", world, "--no-log")
+        self.assertEqual(run.returncode, 2)
+        for words in ("w.yaml:3:22: error: no state at the start", "markers at most", "another seed"):
+            self.assertIn(words, run.stderr)
+
     # The default world has 0.7 at least, slippery 0.3.
     def test_the_friction_of_the_world_is_that_of_the_check(self):
         path = self.write("b.yaml", STANDS_APART)

@@ -26,6 +26,20 @@ TEST(JointFilter, WithoutAMotorTheEncoderCounts) {
   EXPECT_EQ(state.qd[1], 2.0);
 }
 
+// All motors at exactly 0 are as good as any other angle: q_m = -tau / spring.
+TEST(JointFilter, MotorsCountWhereTheyAreReported) {
+  const model::RobotDescription robot = load_hume();
+  engine::JointFilter filter(robot);
+  hal::Sensors sensors;
+  sensors.has_motors = true;
+  model::State state;
+  for (int i = 1; i <= 2; ++i) {
+    sensors.tau[1] = -10.0 * i;
+    filter.update(sensors, 0.0, 0.05, state);
+  }
+  EXPECT_NEAR(state.qd[1], 10.0 / robot.joints[1].spring / robot.period_s(), 1e-12);
+}
+
 // A spring that is not nominal: tau is the nominal constant times the measured deflection.
 TEST(JointFilter, MotorLessDeflectionIsTheJointWhateverTheSpring) {
   const model::RobotDescription robot = load_hume();

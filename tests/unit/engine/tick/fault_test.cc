@@ -261,6 +261,46 @@ machine:
   EXPECT_THROW(rig.loop->start(), std::runtime_error);
 }
 
+constexpr const char* kMeasured = R"(
+behavior: 1
+robot: hume
+estimator: {type: motion_capture}
+machine:
+  tasks: {rest: {type: joint_damping, priority: 1, gains: {kd: 5}}}
+)";
+
+// The stub's robot stands still while its first frames show too little.
+TEST(Faults, AStartWaitsForAFrameThatShowsEnoughMarkers) {
+  const auto start = [](int hidden, bool waits) {
+    StubRig rig(kMeasured, 1.0, nullptr, [](behaviors::Behavior& b) { b.robot.mocap_age = 10e-3; });
+    int reads = 0;
+    rig.hardware->spoil = [&](hal::Sensors& s, std::int64_t) {
+      for (std::size_t m = 0; m < 4; ++m) {
+        s.marker[m] = {m == 1 ? 0.1 : 0.0, m == 2 ? 0.1 : 0.0, m == 3 ? 0.1 : 0.0};
+        s.marker_seen[m] = m < 2 || reads >= hidden;
+      }
+      ++reads;
+    };
+    engine::LoopSettings settings;
+    settings.waits = waits;
+    engine::ControlLoop loop(*rig.behavior, *rig.hardware, settings);
+    try {
+      loop.start();
+    } catch (const engine::NoState& problem) {
+      EXPECT_TRUE(problem.markers());
+      EXPECT_NE(std::string(problem.what()).find("2 markers at most"), std::string::npos)
+          << problem.what();
+      return -reads;
+    }
+    EXPECT_EQ(loop.ticks(), 0);
+    return reads;
+  };
+  EXPECT_EQ(start(0, true), 1);
+  EXPECT_EQ(start(15, true), 16);  // 10 ms are 15 ticks
+  EXPECT_EQ(start(16, true), -16);
+  EXPECT_EQ(start(1, false), -1);
+}
+
 // A behavior that marks no step may hold a foot up for as long as it likes, and one that relies on
 // no foot at all hangs on something.
 TEST(Faults, AFootInTheAirIsASwingOnlyOfABehaviorThatStepsOnAnother) {

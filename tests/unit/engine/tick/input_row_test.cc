@@ -70,6 +70,7 @@ TEST(InputLayout, AFrameOfMotionCaptureReturnsBitForBit) {
   sensors.sensor_truth = true;
   sensors.true_q[0] = 0.7;
   sensors.true_accelerometer_bias = {0.8, 0.9, 1.0};
+  sensors.has_motors = true;
   std::vector<std::uint64_t> row(static_cast<std::size_t>(layout.columns()));
   hal::Commands commands;
   layout.pack(sensors, true, commands, row.data());
@@ -79,6 +80,7 @@ TEST(InputLayout, AFrameOfMotionCaptureReturnsBitForBit) {
   EXPECT_EQ(back.marker_seen, sensors.marker_seen);
   EXPECT_EQ(back.mocap_age, sensors.mocap_age);
   EXPECT_TRUE(back.sensor_truth);
+  EXPECT_TRUE(back.has_motors);
   EXPECT_EQ(back.true_q, sensors.true_q);
   EXPECT_EQ(back.true_accelerometer_bias, sensors.true_accelerometer_bias);
 }
@@ -111,6 +113,9 @@ TEST(InputLayout, FlagsHaveTheBitsOfTheLogFormat) {
   EXPECT_EQ(flags(false), 2u + 4u + 8u + 16u);
   sensors.mocap_fresh = true;
   EXPECT_EQ(flags(false), 2u + 4u + 8u + 16u + 32u);
+  sensors.has_motors = true;
+  EXPECT_EQ(flags(false), 2u + 4u + 8u + 16u + 32u + 72'057'594'037'927'936u);
+  sensors.has_motors = false;
   sensors.contact[1] = true;
   EXPECT_EQ(flags(false), 2u + 4u + 8u + 16u + 32u + 512u);
   sensors.contact[0] = true;

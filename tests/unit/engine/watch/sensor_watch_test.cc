@@ -1,70 +1,17 @@
-// Ages, frozen sensors, the clock, and values that are not finite.
-#include "engine/watch/sensor_watch.h"
-
-#include <gtest/gtest.h>
-
-#include <functional>
+// Ages, the clock, and values that are not finite.
 #include <limits>
-#include <optional>
 
 #include "engine/tick/safety.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/fake_robot.h"
+#include "tests/unit/engine/watch/watch_test_support.h"
 
 namespace footfall::tests {
 namespace {
 
-using behaviors::EstimatorType;
-using engine::SensorFindings;
-using engine::SensorWatch;
-
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A watch on a robot of 1 kHz whose IMU and motion capture move in every tick.
-class SensorWatchTest : public testing::Test {
- protected:
-  SensorWatchTest() {
-    robot_.rate_mhz = 1'000'000;
-    robot_.imu_age = 5e-3;
-    robot_.mocap_age = 10e-3;
-    robot_.joints.resize(2);
-  }
-  void watch(EstimatorType type,
-             behaviors::ContactSource contact = behaviors::ContactSource::switches) {
-    watch_.emplace(behaviors::EstimatorSpec{.type = type, .contact = contact}, robot_);
-  }
-  SensorFindings tick(const std::function<void(hal::Sensors&)>& change = nullptr,
-                      bool fresh = true) {
-    ++tick_;
-    const auto t = static_cast<double>(tick_);
-    sensors_.time_ns = tick_ * 1'000'000;
-    sensors_.gyro = {t, 0.0, 0.0};
-    sensors_.accelerometer = {0.0, 0.0, 9.81};
-    for (std::size_t m = 0; m < 4; ++m) {
-      sensors_.marker[m] = {t, 0.1 * static_cast<double>(m), 1.0};
-      sensors_.marker_seen[m] = true;
-    }
-    sensors_.imu_fresh = sensors_.mocap_fresh = true;
-    sensors_.q = {};
-    if (change) change(sensors_);
-    const SensorFindings found = watch_->check(sensors_, fresh);
-    watch_->used(used_);
-    return found;
-  }
-  // Ticks with this change until the finding, at most 100.
-  int ticks_until(bool SensorFindings::*finding, const std::function<void(hal::Sensors&)>& change) {
-    for (int k = 1; k <= 100; ++k) {
-      if (tick(change).*finding) return k;
-    }
-    return -1;
-  }
-
-  model::RobotDescription robot_;
-  std::optional<SensorWatch> watch_;
-  hal::Sensors sensors_;
-  std::int64_t tick_ = 0;
-  int used_ = 4;  // markers by the estimator
-};
+class SensorWatchTest : public WatchTest {};
 
 TEST_F(SensorWatchTest, DataThatAreNotNewAreStaleBeyondTheLimitForEveryEstimator) {
   for (const auto type :
@@ -89,30 +36,6 @@ TEST_F(SensorWatchTest, FramesMayComeAtALowerRateThanTicks) {
   }
 }
 
-TEST_F(SensorWatchTest, AFrozenImuIsStaleWhereItIsNeeded) {
-  const auto freeze = [](hal::Sensors& s) { s.gyro = {1.0, 0.0, 0.0}; };
-  watch(EstimatorType::motion_capture);
-  tick(), tick();
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), 7);  // the first one differs
-  watch(EstimatorType::true_state);
-  tick(), tick();
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, freeze), -1);
-}
-
-// Perfect ones of a simulator at rest never change; a real one that does not is dead.
-TEST_F(SensorWatchTest, AnImuThatHasNeverMovedIsFrozenUnlessItIsPerfect) {
-  const auto rest = [](hal::Sensors& s) { s.gyro = {0.0, 0.0, 0.0}; };
-  watch(EstimatorType::contact_kalman);
-  sensors_.has_truth = true;
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), -1);
-  sensors_.sensor_truth = true;
-  watch(EstimatorType::contact_kalman);
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), 7);  // the first one is new
-  sensors_.has_truth = sensors_.sensor_truth = false;
-  watch(EstimatorType::contact_kalman);
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale, rest), 7);
-}
-
 // Too old for it, say.
 TEST_F(SensorWatchTest, FramesThatTheEstimatorDoesNotUseAreStale) {
   watch(EstimatorType::motion_capture);
@@ -120,42 +43,22 @@ TEST_F(SensorWatchTest, FramesThatTheEstimatorDoesNotUseAreStale) {
   EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, nullptr), 11);
 }
 
-TEST_F(SensorWatchTest, TheEstimatorDoesNotGetAFrameTwice) {
-  watch(EstimatorType::motion_capture);
-  tick(), tick();
-  EXPECT_TRUE(watch_->usable().mocap_fresh);
-  tick([](hal::Sensors& s) {
-    for (std::size_t m = 0; m < 4; ++m) s.marker[m] = {2.0, 0.1 * static_cast<double>(m), 1.0};
-  });
-  EXPECT_FALSE(watch_->usable().mocap_fresh);
+TEST_F(SensorWatchTest, AReadThatBringsNothingGivesNothingNew) {
+  watch(EstimatorType::contact_kalman);
   tick();
-  EXPECT_TRUE(watch_->usable().mocap_fresh);
-}
-
-TEST_F(SensorWatchTest, AGyroscopeAtRestIsNotFrozenWhileTheAccelerometerMoves) {
-  watch(EstimatorType::contact_kalman);
-  EXPECT_EQ(ticks_until(&SensorFindings::imu_stale,
-                        [this](hal::Sensors& s) {
-                          s.gyro = {};
-                          s.accelerometer[2] = 9.81 + 1e-3 * static_cast<double>(tick_ % 2);
-                        }),
-            -1);
-}
-
-TEST_F(SensorWatchTest, FramesThatRepeatOrShowTooFewMarkersAreStaleWhereTheyAreNeeded) {
-  const auto freeze = [](hal::Sensors& s) {
-    for (auto& marker : s.marker) marker = {1.0, 2.0, 3.0};
-  };
-  const auto hide = [](hal::Sensors& s) { s.marker_seen = {true, true}; };
-  watch(EstimatorType::motion_capture);
-  tick(), tick();
-  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, freeze), 12);
-  watch(EstimatorType::motion_capture);
-  tick(), tick();
-  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, hide), 11);
-  watch(EstimatorType::contact_kalman);
-  tick(), tick();
-  EXPECT_EQ(ticks_until(&SensorFindings::mocap_stale, hide), -1);
+  EXPECT_TRUE(watch_->joints_new());
+  for (int k = 0; k < 3; ++k) {
+    tick(nullptr, false);
+    const hal::Sensors& given = watch_->usable();
+    EXPECT_FALSE(given.imu_fresh || given.mocap_fresh || watch_->joints_new());
+    EXPECT_EQ(given.q[0], 2e-3);  // of the first of these reads
+  }
+  tick([](hal::Sensors& s) { s.qd[1] = kNan; });
+  EXPECT_FALSE(watch_->joints_new());
+  EXPECT_TRUE(watch_->usable().imu_fresh);
+  tick([](hal::Sensors& s) { s.qd[1] = 0.0; });
+  EXPECT_TRUE(watch_->joints_new());
+  EXPECT_EQ(&watch_->usable(), &sensors_);
 }
 
 TEST_F(SensorWatchTest, AReadThatBringsNothingAgesWhatWasThere) {
@@ -215,17 +118,28 @@ TEST_F(SensorWatchTest, AnEstimatorGetsTheLastGoodValueInsteadOfOneThatIsNotFini
   EXPECT_EQ(&watch_->usable(), &sensors_);
 }
 
+// Torques and motors give the joints' positions, whatever tells the contacts.
+TEST_F(SensorWatchTest, AnEstimatorThatMeasuresUsesTorquesAndMotors) {
+  for (const auto field : {&hal::Sensors::tau, &hal::Sensors::motor}) {
+    for (const auto contact :
+         {behaviors::ContactSource::switches, behaviors::ContactSource::torque}) {
+      watch(EstimatorType::contact_kalman, contact);
+      tick([&](hal::Sensors& s) { (s.*field)[0] = 0.5; });
+      EXPECT_TRUE(tick([&](hal::Sensors& s) { (s.*field)[0] = kNan; }).infinite);
+      EXPECT_EQ((watch_->usable().*field)[0], 0.5);
+      (sensors_.*field)[0] = 0.0;
+    }
+  }
+}
+
 TEST_F(SensorWatchTest, WhatTheEstimatorDoesNotUseMayBeAnything) {
-  const auto spoil = [](hal::Sensors& s) {
-    s.tau[0] = s.marker[0][1] = kNan;
-    s.q[core::kMaxJoints - 1] = kNan;  // of no joint
-  };
   watch(EstimatorType::contact_kalman);
-  EXPECT_FALSE(tick(spoil).infinite);
-  watch(EstimatorType::contact_kalman, behaviors::ContactSource::torque);
-  EXPECT_TRUE(tick(spoil).infinite);
+  EXPECT_FALSE(tick([](hal::Sensors& s) {
+                 s.marker[0][1] = s.motor_torque[0] = kNan;
+                 s.q[core::kMaxJoints - 1] = kNan;  // of no joint
+               }).infinite);
   watch(EstimatorType::true_state);
-  EXPECT_FALSE(tick([](hal::Sensors& s) { s.gyro[0] = kNan; }).infinite);
+  EXPECT_FALSE(tick([](hal::Sensors& s) { s.gyro[0] = s.tau[0] = s.motor[0] = kNan; }).infinite);
 }
 
 TEST_F(SensorWatchTest, GoesOnFromAnotherWatch) {
@@ -255,10 +169,16 @@ TEST(SensorWatchFaults, EachFindingIsAFault) {
   engine::SafetyFilter filter(behavior->robot);
   engine::TickStart tick;
   EXPECT_FALSE(filter.check_state({}, tick, model).has(core::Fault::sensor_nan));
-  tick.sensed = {.imu_stale = true, .mocap_stale = true, .clock = true, .infinite = true};
+  EXPECT_FALSE(filter.check_state({}, tick, model).has(core::Fault::sensor_stale));
+  tick.sensed = {.imu_stale = true,
+                 .mocap_stale = true,
+                 .joints_stale = true,
+                 .clock = true,
+                 .infinite = true};
   const engine::FaultFindings found = filter.check_state({}, tick, model);
-  for (const auto fault : {core::Fault::imu_stale, core::Fault::mocap_stale,
-                           core::Fault::sensor_clock, core::Fault::sensor_nan}) {
+  for (const auto fault :
+       {core::Fault::imu_stale, core::Fault::mocap_stale, core::Fault::sensor_stale,
+        core::Fault::sensor_clock, core::Fault::sensor_nan}) {
     EXPECT_TRUE(found.has(fault));
   }
 }
