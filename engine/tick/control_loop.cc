@@ -21,8 +21,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
       model_(behavior.robot, settings.deviation),
       machine_(std::make_unique<behaviors::Machine>(behavior, signals_, &model_)),
       edits_(behavior),
-      estimator_(make_estimator(behavior.estimator, behavior.robot, model_)),
-      watch_(behavior.estimator, behavior.robot),
+      sensing_(behavior, model_),
       controller_(model_, behavior.robot.torque_limits(), behaviors::controller_sizes(behavior),
                   period_),
       ranks_(behavior, model_),
@@ -52,12 +51,13 @@ void ControlLoop::find_state() {
   const std::int64_t reads = 1 + std::llround(limit / period_);
   std::int64_t most = 0;  // markers
   for (std::int64_t k = 0; k < reads; ++k) {
-    if (k > 0) estimator_ = make_estimator(behavior_.estimator, behavior_.robot, model_);
+    if (k > 0) sensing_.reset(model_);
     sense();
     estimate_ = {};
     std::copy_n(sensors_.q.begin(), model_.joint_count(), estimate_.state.q.begin());
     model_.update(estimate_.state);
-    if (estimate_state(sensors_)) return;
+    if (sensing_.start(sensors_, model_, link_.support(), machine_->parameters(), estimate_))
+      return;
     most = std::max(most, std::ranges::count(sensors_.marker_seen, true));
   }
   std::string text = "no state at the start: the first data of the backend '" + hardware_.name() +
@@ -69,15 +69,6 @@ void ControlLoop::find_state() {
             " markers at most, 3 are needed)";
   }
   throw NoState(text, few);
-}
-
-bool ControlLoop::estimate_state(const hal::Sensors& sensors) noexcept {
-  const behaviors::EstimatorSpec& spec = behavior_.estimator;
-  const auto parameters = machine_->parameters();
-  return estimator_->estimate(
-      {sensors, model_, link_.support(),
-       std::span<const double>(parameters).subspan(at(spec.first_slot), at(spec.slots))},
-      estimate_);
 }
 
 LoopState ControlLoop::tick() noexcept {
@@ -95,9 +86,8 @@ bool ControlLoop::sense() noexcept {
 
 void ControlLoop::compute() noexcept {
   faults_.begin_tick();
-  const SensorFindings sensed = watch_.check(sensors_, fresh_);
-  const bool estimated = estimate_state(watch_.usable());
-  watch_.used(estimate_.quality.markers);
+  const Sensed sensed =
+      sensing_.step(sensors_, fresh_, model_, link_.support(), machine_->parameters(), estimate_);
   model_.update(estimate_.state);
   writer_.write_measured(time(), model_, sensors_, estimate_);
   // After the estimate, as a replay writes what came from outside: there, too, it acts on the
@@ -106,7 +96,8 @@ void ControlLoop::compute() noexcept {
   // A foot in the air swings while another one holds; a robot on a rope may hang there.
   const bool swings = machine_->stepping() && link_.support() != 0;
   faults_.take(
-      safety_.check_state(sensors_, {fresh_, estimated, swings, estimate_.contact, sensed}, model_),
+      safety_.check_state(
+          sensors_, {fresh_, sensed.estimated, swings, estimate_.contact, sensed.findings}, model_),
       *machine_);
   faults_.take_late(outside_.deliver(tick_, *machine_, edits_.moved() || safety_.held_back()),
                     *machine_);
@@ -118,7 +109,7 @@ void ControlLoop::compute() noexcept {
   faults_.take(swings_.check(machine_->control_spec(), estimate_.contact, machine_->stepping()),
                *machine_);
   faults_.take(safety_.filter(commands_, outside_.limit_steps()), *machine_);
-  watch_.commanded(commands_);
+  sensing_.commanded(commands_);
   writer_.write_control(*machine_, controller_.result(), commands_, safety_.torque_step(),
                         faults_.counters());
 }

@@ -12,7 +12,6 @@
 #include "core/fault.h"
 #include "core/signal_table.h"
 #include "engine/edits/door.h"
-#include "engine/estimators/catalogue.h"
 #include "engine/links/hardware_link.h"
 #include "engine/tick/faults.h"
 #include "engine/tick/outside.h"
@@ -21,7 +20,7 @@
 #include "engine/tick/settings.h"
 #include "engine/tick/signals.h"
 #include "engine/tick/swing_watch.h"
-#include "engine/watch/sensor_watch.h"
+#include "engine/watch/sensing.h"
 #include "hal/hardware.h"
 #include "model/control_model.h"
 #include "tasks/whole_body_controller.h"
@@ -124,7 +123,6 @@ class ControlLoop {
 
  private:
   void find_state();
-  bool estimate_state(const hal::Sensors& sensors) noexcept;
 
   const behaviors::Behavior& behavior_;
   hal::Hardware& hardware_;
@@ -135,8 +133,7 @@ class ControlLoop {
   model::ControlModel model_;
   std::unique_ptr<behaviors::Machine> machine_;
   EditDoor edits_;
-  std::unique_ptr<Estimator> estimator_;
-  SensorWatch watch_;
+  Sensing sensing_;
   tasks::WholeBodyController controller_;
   RankWatch ranks_;
   SwingWatch swings_;

@@ -21,8 +21,7 @@ void ControlLoop::take_over(ControlLoop& old, const behaviors::TakeOverMap& map,
   sensors_ = old.sensors_;
   commands_ = old.commands_;
   estimate_ = old.estimate_;
-  estimator_->take_over(*old.estimator_, old.estimate_);
-  watch_.take_over(old.watch_);
+  sensing_.take_over(old.sensing_, old.estimate_);
   fresh_ = old.fresh_;
   // Back at once: what brought the former behavior back is to be reacted to, if it stays.
   faults_.take_over(old.faults_, change == ValueChange::at_once);

@@ -13,10 +13,9 @@
 
 #include "behaviors/language/estimators.h"
 #include "behaviors/loader.h"
-#include "engine/estimators/catalogue.h"
 #include "engine/estimators/truth.h"
 #include "engine/tick/input_row.h"
-#include "engine/watch/sensor_watch.h"
+#include "engine/watch/sensing.h"
 #include "lab/log/attached_files.h"
 #include "lab/run/log_setup.h"
 
@@ -122,8 +121,7 @@ class EstimatorRun {
         behavior_(behavior),
         model_(behavior.robot, setup.settings.deviation),
         truth_(behavior.robot, setup.settings.deviation),
-        estimator_(engine::make_estimator(behavior.estimator, behavior.robot, model_)),
-        watch_(behavior.estimator, behavior.robot),
+        sensing_(behavior, model_),
         support_(log, behavior.robot),
         layout_(log.inputs.names) {
     if (layout_.names() != log.inputs.columns) {
@@ -138,9 +136,9 @@ class EstimatorRun {
     const auto rate = static_cast<double>(log_.rate_mhz);
     const std::int64_t end = log_.inputs.first_tick + log_.inputs.ticks();
     for (std::int64_t tick = log_.inputs.first_tick; tick < end; ++tick) {
-      hal::Commands ignored;
-      const bool fresh = layout_.unpack(log_.inputs.row(tick), sensors_, ignored);
-      const bool estimated = step(tick, fresh);
+      hal::Commands commands;
+      const bool fresh = layout_.unpack(log_.inputs.row(tick), sensors_, commands);
+      const bool estimated = step(tick, fresh, commands);
       if (estimated && !start_) start_.emplace(estimate_.state, engine::true_state(sensors_));
       const double time = static_cast<double>(std::max<std::int64_t>(tick, 0)) * 1e3 / rate;
       if (time < figures_.from) continue;
@@ -153,20 +151,18 @@ class EstimatorRun {
   }
 
  private:
-  bool step(std::int64_t tick, bool fresh) {
+  bool step(std::int64_t tick, bool fresh, const hal::Commands& commands) {
     if (tick == log_.inputs.first_tick) {
       std::copy_n(sensors_.q.begin(), model_.joint_count(), estimate_.state.q.begin());
       model_.update(estimate_.state);
     }
-    // A run's start looks at the sensors once before the first tick, and watches nothing.
-    if (tick >= 0) watch_.check(sensors_, fresh);
-    const behaviors::EstimatorSpec& spec = behavior_.estimator;
-    const auto parameters = std::span<const double>(behavior_.values)
-                                .subspan(static_cast<std::size_t>(spec.first_slot),
-                                         static_cast<std::size_t>(spec.slots));
-    const bool estimated = estimator_->estimate(
-        {tick < 0 ? sensors_ : watch_.usable(), model_, support_.before(tick), parameters},
-        estimate_);
+    // A run's start looks at the sensors once before the first tick.
+    const std::uint64_t support = support_.before(tick);
+    const bool estimated =
+        tick < 0 ? sensing_.start(sensors_, model_, support, behavior_.values, estimate_)
+                 : sensing_.step(sensors_, fresh, model_, support, behavior_.values, estimate_)
+                       .estimated;
+    sensing_.commanded(commands);
     if (estimated) model_.update(estimate_.state);
     return estimated;
   }
@@ -191,7 +187,7 @@ class EstimatorRun {
     }
     figures_.rotation.add(angle_between(state.q_WB, sensors_.q_WB));
     engine::ErrorCovariance covariance;
-    if (estimator_->covariance(covariance)) {
+    if (sensing_.estimator().covariance(covariance)) {
       const model::State truth = engine::true_state(sensors_);
       const NormalisedError error = normalised_error(state, truth, covariance);
       figures_.nees.add(error.all);
@@ -240,8 +236,7 @@ class EstimatorRun {
   const Log& log_;
   const behaviors::Behavior& behavior_;
   model::ControlModel model_, truth_;
-  std::unique_ptr<engine::Estimator> estimator_;
-  engine::SensorWatch watch_;
+  engine::Sensing sensing_;
   LoggedSupport support_;
   engine::InputLayout layout_;
   std::set<std::int64_t> plans_;

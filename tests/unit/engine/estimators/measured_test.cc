@@ -35,7 +35,7 @@ TEST(JointFilter, MotorsCountWhereTheyAreReported) {
   model::State state;
   for (int i = 1; i <= 2; ++i) {
     sensors.tau[1] = -10.0 * i;
-    filter.update(sensors, 0.0, 0.05, state);
+    filter.update(sensors, true, 0.0, 0.05, state);
   }
   EXPECT_NEAR(state.qd[1], 10.0 / robot.joints[1].spring / robot.period_s(), 1e-12);
 }
