@@ -173,6 +173,10 @@ Backend make_backend(const RunOptions& options, const behaviors::Behavior& behav
 lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavior& behavior,
                              const sim::WorldDescription& world, const hal::Hardware& sensors,
                              const Backend& backend, const model::Draw& drawn) {
+  const behaviors::EstimatorInfo& estimator = behaviors::estimator_info(behavior.estimator.type);
+  const char* const errors = !world.sensors.errors.any() ? "none"
+                             : estimator.needs_imu       ? "used"
+                                                         : "unused";
   return {behavior.name,
           behavior.robot.name,
           world.name,
@@ -183,7 +187,8 @@ lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavio
           lab::unused_torque_loops(behavior, sensors),
           drawn.values,
           backend.constraints,
-          std::string(behaviors::estimator_info(behavior.estimator.type).name)};
+          std::string(estimator.name),
+          errors};
 }
 
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world) {

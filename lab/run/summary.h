@@ -35,6 +35,9 @@ struct RunIdentity {
   // External aids: names of the world's constraints, and `hold of BODY` of a scenario.
   std::vector<std::string> constraints{};
   std::string estimator = "true_state";  // by the name of its type
+  // Whether the errors of the world's sensors reach the state: `none`, `used`, or `unused` by an
+  // estimator that reads no sensors.
+  std::string sensor_errors = "none";
 };
 // {NAME: number or list}
 nlohmann::ordered_json variation_json(const RunIdentity& id);
