@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "core/random.h"
 #include "tests/support/hume.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 namespace {
@@ -61,10 +61,10 @@ StackedFit stacked_fit(const std::vector<MarkerPair>& pairs, const Matrix3d& pre
     M(3 * n + k, 3 + k) = lambda;
     y[3 * n + k] = lambda * predicted(k / 3, k % 3);
   }
-  const Eigen::VectorXd x = M.colPivHouseholderQr().solve(y);
+  const Matrix x = least_squares(dense(M), dense(y));
   StackedFit fit;
-  fit.t = x.head<3>();
-  for (Eigen::Index k = 0; k < 9; ++k) fit.A(k / 3, k % 3) = x[3 + k];
+  fit.t = Vector3d(x.data());
+  for (Eigen::Index k = 0; k < 9; ++k) fit.A(k / 3, k % 3) = x(static_cast<int>(3 + k));
   return fit;
 }
 
