@@ -105,7 +105,7 @@ class SpringsCheck {
             : h * h * rope.stiffness + 2.0 * h * rope.damping < 4.0 * mass;
     if (stable) return;
     core::Mark mark = aid.rope->mark;
-    mark.file = diagnostics_.add_file(aid.body.file);
+    mark.file = diagnostics_.add_file(aid.rope->file);
     diagnostics_.error(
         mark, "out-of-range",
         fmt::format("the physics step of 1/{:.0f} s does not integrate the rope of '{}' stably: "
@@ -145,7 +145,7 @@ class SpringsCheck {
                                   ? fmt::format("stiffness below {:.3g} {}", most, stiffness)
                                   : fmt::format("damping below {:.3g} {}", most_damping, damping);
     core::Mark mark = aid.axes[k]->mark;
-    mark.file = diagnostics_.add_file(aid.body.file);
+    mark.file = diagnostics_.add_file(aid.axes[k]->file);
     diagnostics_.error(
         mark, "out-of-range",
         fmt::format("the physics step of 1/{:.0f} s integrates the spring '{}' of "

@@ -30,6 +30,7 @@ namespace {
 struct CheckOptions {
   std::vector<std::string> files;
   std::string stdin_name = "stdin";
+  std::string robot;  // file or name
   bool strict = false, json = false;
 };
 
@@ -42,14 +43,52 @@ void check_fit(const model::RobotDescription& robot, core::Diagnostics& diagnost
   }
 }
 
-void check_robot(const std::string& path, core::Diagnostics& diagnostics) {
+// What the checks of one file give and take.
+struct Checked {
+  const std::string& robot;  // file or name; empty: a behavior's own
+  core::Diagnostics& diagnostics;
+  std::string not_judged;  // for want of a robot; empty: all was judged
+};
+
+void check_robot(const std::string& path, Checked& checked) {
+  core::Diagnostics& diagnostics = checked.diagnostics;
   const model::RobotDescription robot = model::load_robot(path, diagnostics);
   if (diagnostics.has_errors()) return;
   check_fit(robot, diagnostics);
   behaviors::check_drives(robot, diagnostics);
 }
 
-void check_world(const std::string& path, core::Diagnostics& diagnostics) {
+// What of a world only a robot can judge: the names of its bodies and joints, springs and ropes on
+// its masses, actuators with its drives.
+std::string needs_robot(const sim::WorldDescription& world) {
+  std::vector<std::string> parts;
+  if (!world.links.empty() || !world.variation.links.empty()) parts.emplace_back("bodies");
+  if (!world.start_joints.node.is_null() || !world.axis_tilts.node.is_null()) {
+    parts.emplace_back("joints");
+  }
+  if (!world.constraints.empty()) parts.emplace_back("constraints");
+  if (world.actuators.model != sim::ActuatorModel::ideal) parts.emplace_back("actuators");
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// With the world as it is written: errors of a robot's own file are its own check's.
+void check_world_on(const std::string& name, const sim::WorldDescription& world,
+                    core::Diagnostics& diagnostics) {
+  const std::string path = model::find_robot_file(name, search_path());
+  if (path.empty()) {
+    diagnostics.error(
+        {diagnostics.add_file("--robot"), 0, 0}, "cannot-read",
+        fmt::format("no such file, and no robot '{}'{}", name,
+                    core::did_you_mean_or_list(
+                        name, core::names_in(search_path(), "robots", "robot.yaml"))));
+    return;
+  }
+  const model::RobotDescription robot = model::load_robot(path, diagnostics);
+  if (!diagnostics.has_errors()) check_world_fits(world, robot, diagnostics);
+}
+
+void check_world(const std::string& path, Checked& checked) {
+  core::Diagnostics& diagnostics = checked.diagnostics;
   const sim::WorldDescription world = sim::load_world(path, diagnostics, search_path());
   if (diagnostics.has_errors()) return;
   core::Diagnostics refused;  // only refused by `run`: the file itself is correct
@@ -58,17 +97,23 @@ void check_world(const std::string& path, core::Diagnostics& diagnostics) {
     item.text += "; runs refuse this world";
     diagnostics.warning(item.mark, item.id, item.text);
   }
+  if (checked.robot.empty()) {
+    checked.not_judged = needs_robot(world);
+  } else {
+    check_world_on(checked.robot, world, diagnostics);
+  }
 }
 
-behaviors::LoadOptions load_options() {
+behaviors::LoadOptions load_options(const std::string& robot) {
   behaviors::LoadOptions options;
   options.search = search_path();
+  options.robot = robot;
   options.check = behaviors::physics_check();
   return options;
 }
 
-void check_behavior(const std::string& path, core::Diagnostics& diagnostics) {
-  behaviors::load_behavior(path, load_options(), diagnostics);
+void check_behavior(const std::string& path, Checked& checked) {
+  behaviors::load_behavior(path, load_options(checked.robot), checked.diagnostics);
 }
 
 // Checks the world that a scenario names: a file beside it, or one found by name; as the scenario's
@@ -90,7 +135,7 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
     if (behavior != nullptr && behavior->has_robot) {
       check_world_fits(world, behavior->robot, diagnostics, lab::holds_of(scenario));
     }
-    return physics_world(world);
+    return physics_world(world, !lab::holds_of(scenario).empty());
   }
   if (scenario.world_mark.line > 0) {
     diagnostics.error(scenario.world_mark, "cannot-read",
@@ -104,7 +149,8 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
 }
 
 // The scenario's behavior, in its world, as `run` checks it.
-void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
+void check_scenario(const std::string& path, Checked& checked) {
+  core::Diagnostics& diagnostics = checked.diagnostics;
   const lab::ScenarioDescription scenario = lab::load_scenario(path, {search_path()}, diagnostics);
   const behaviors::PhysicsWorld world = check_world_of(scenario, diagnostics);
   if (diagnostics.has_errors() || scenario.behavior == nullptr) return;
@@ -121,29 +167,40 @@ void check_scenario(const std::string& path, core::Diagnostics& diagnostics) {
 // File kinds by their first key. A file without a kind is checked as a behavior, which reports it.
 struct Kind {
   const char* key;
-  void (*check)(const std::string& path, core::Diagnostics& diagnostics);
+  void (*check)(const std::string& path, Checked& checked);
 };
+void check_sweep(const std::string& path, Checked& checked) {
+  check_sweep_file(path, checked.diagnostics);
+}
 constexpr Kind kKinds[] = {
-    {"behavior", check_behavior}, {"robot", check_robot},      {"world", check_world},
-    {"scenario", check_scenario}, {"sweep", check_sweep_file},
+    {"behavior", check_behavior}, {"robot", check_robot}, {"world", check_world},
+    {"scenario", check_scenario}, {"sweep", check_sweep},
 };
 
-void check_file(const std::string& file, const CheckOptions& options,
-                core::Diagnostics& diagnostics) {
+void check_file(const std::string& file, const CheckOptions& options, Checked& checked) {
+  core::Diagnostics& diagnostics = checked.diagnostics;
   if (file == "-") {
     const std::string text = core::read_whole_file(file);
-    behaviors::load_behavior_text(text, options.stdin_name, load_options(), diagnostics);
+    behaviors::load_behavior_text(text, options.stdin_name, load_options(options.robot),
+                                  diagnostics);
     return;
   }
   const std::string path = require_named_file(file, diagnostics);
   if (path.empty()) return;
   const std::string key = lab::first_key(path, base_folders());
   const auto kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return key == k.key; });
-  (kind == std::end(kKinds) ? check_behavior : kind->check)(path, diagnostics);
+  const bool takes_robot =
+      kind == std::end(kKinds) || kind->check == check_behavior || kind->check == check_world;
+  if (!options.robot.empty() && !takes_robot) {
+    diagnostics.error({diagnostics.add_file("--robot"), 0, 0}, "set",
+                      fmt::format("is of behaviors and worlds; '{}' is a {}", file, key));
+    return;
+  }
+  (kind == std::end(kKinds) ? check_behavior : kind->check)(path, checked);
 }
 
-nlohmann::ordered_json to_json(const std::string& name, const core::Diagnostics& diagnostics,
-                               bool ok) {
+nlohmann::ordered_json to_json(const std::string& name, const Checked& checked, bool ok) {
+  const core::Diagnostics& diagnostics = checked.diagnostics;
   auto list = nlohmann::ordered_json::array();
   for (const core::Diagnostic& item : diagnostics.sorted()) {
     list.push_back({{"severity", item.severity == core::Severity::error ? "error" : "warning"},
@@ -153,7 +210,10 @@ nlohmann::ordered_json to_json(const std::string& name, const core::Diagnostics&
                     {"column", item.mark.column},
                     {"text", item.text}});
   }
-  return {{"file", name}, {"ok", ok}, {"diagnostics", std::move(list)}};
+  return {{"file", name},
+          {"ok", ok},
+          {"not_judged", checked.not_judged},
+          {"diagnostics", std::move(list)}};
 }
 
 std::string counted(int count, const char* what) {
@@ -165,7 +225,8 @@ int check(const CheckOptions& options) {
   auto results = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     core::Diagnostics diagnostics;
-    check_file(file, options, diagnostics);
+    Checked checked{options.robot, diagnostics, {}};
+    check_file(file, options, checked);
     const auto items = diagnostics.sorted();
     const auto wrong = static_cast<int>(
         std::ranges::count(items, core::Severity::error, &core::Diagnostic::severity));
@@ -177,12 +238,15 @@ int check(const CheckOptions& options) {
     if (!ok) exit_code = std::max(exit_code, kRobotFailed);
     const std::string name = file == "-" ? options.stdin_name : file;
     if (options.json) {
-      results.push_back(to_json(name, diagnostics, ok));
+      results.push_back(to_json(name, checked, ok));
       continue;
     }
     print_diagnostics(diagnostics);
-    if (ok)
-      fmt::print("{}: ok{}\n", name, doubtful > 0 ? " (" + counted(doubtful, "warning") + ")" : "");
+    if (!ok) continue;
+    const std::string rest =
+        checked.not_judged.empty() ? "" : "; --robot NAME judges its " + checked.not_judged;
+    fmt::print("{}: ok{}{}\n", name, doubtful > 0 ? " (" + counted(doubtful, "warning") + ")" : "",
+               rest);
   }
   if (options.json) {
     const nlohmann::ordered_json out = {{"files", std::move(results)}};
@@ -208,6 +272,8 @@ void add_check_command(CLI::App& app, int& exit_code) {
       ->required();
   command->add_flag("--strict", options->strict, "Exit 1 if there are warnings");
   command->add_flag("--json", options->json, "One JSON object with every problem");
+  command->add_option("--robot", options->robot,
+                      "Robot file or name: of behaviors instead of their own, and to judge worlds");
   auto* name = command->add_option(
       "--stdin-name", options->stdin_name,
       "File name for - in messages; `base:` and `robot:` are searched beside it");

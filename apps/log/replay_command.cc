@@ -98,7 +98,15 @@ int run_estimator(const ReplayArguments& arguments) {
     if (item.substr(0, sign) == "estimator.type") {
       throw InputError(fmt::format("--set {}: error: --estimator names the type", item));
     }
-    trial.set.emplace_back(item.substr(0, sign), item.substr(sign + 1));
+    const std::string name = item.substr(0, sign), value = item.substr(sign + 1);
+    for (const auto& [before, other] : trial.set) {
+      if (before != name) continue;
+      throw InputError(
+          fmt::format("--set: error: '{}' is set twice, to '{}' and to '{}': expected "
+                      "one of them",
+                      name, other, value));
+    }
+    trial.set.emplace_back(name, value);
   }
   const lab::Log log = read_whole_log(arguments.log);
   try {

@@ -170,7 +170,7 @@ int run_behavior(RunOptions options) {
   sim::WorldDescription declared = declared_world(
       options, load_world(options.world, {}, {}, world_settings(options, world_given)));
   declared.name += world_settings_text(options);
-  const behaviors::PhysicsWorld physics = physics_world(declared);
+  const behaviors::PhysicsWorld physics = physics_world(declared, options.backend == "stub");
   auto behavior = load_or_explain(options.behavior, options.robot, options.set, &physics);
   if (!behavior) return kBadInput;
   if (!behavior->has_robot) {

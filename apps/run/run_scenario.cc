@@ -61,14 +61,16 @@ CheckedScenario load_checked(const RunOptions& options) {
     world = stand_world(std::move(world), scenario.behavior->robot);
   }
   check_world_fits(world, scenario.behavior->robot, lab::holds_of(scenario));
+  const bool held = options.backend == "stub" || !lab::holds_of(scenario).empty();
+  const behaviors::PhysicsWorld facts = physics_world(world, held);
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
-  behaviors::check_physics(*scenario.behavior, physics, physics_world(world));
+  behaviors::check_physics(*scenario.behavior, physics, facts);
   print_diagnostics(physics);
   if (physics.has_errors()) throw InputError("");
   core::Diagnostics edits;
   for (int k = 0; k < diagnostics.file_count(); ++k) edits.add_file(diagnostics.file(k));
-  lab::check_edits(scenario, physics_world(world), edits);
+  lab::check_edits(scenario, facts, edits);
   print_diagnostics(edits);
   if (edits.has_errors()) throw InputError("");
   return {std::move(scenario), std::move(world)};
@@ -151,7 +153,7 @@ int run_scenario_file(RunOptions options) {
   lab::RunSpec spec = make_spec(options, core::stop_on_signals());
   schedule_push(drawn, backend, behavior, spec);
   lab::RunIdentity id = identity_of(options, behavior, world, sensors, backend, drawn);
-  const auto link = attach_link(options, loop, physics_world(checked.world), spec);
+  const auto link = attach_link(options, loop, physics_world(checked.world, true), spec);
   const auto folder = claim_folder(options, scenario.name);
   const auto log = open_log(options, behavior, world, id);
   spec.log = log.get();

@@ -178,6 +178,10 @@ std::optional<std::int64_t> drawn_footholds(const Backend& backend) {
 lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavior& behavior,
                              const sim::WorldDescription& world, const hal::Hardware& sensors,
                              const Backend& backend, const model::Draw& drawn) {
+  const behaviors::EstimatorInfo& estimator = behaviors::estimator_info(behavior.estimator.type);
+  const char* const errors = !world.sensors.errors.any() ? "none"
+                             : estimator.needs_imu       ? "used"
+                                                         : "unused";
   return {behavior.name,
           behavior.robot.name,
           world.name,
@@ -188,7 +192,8 @@ lab::RunIdentity identity_of(const RunOptions& options, const behaviors::Behavio
           lab::unused_torque_loops(behavior, sensors),
           drawn.values,
           backend.constraints,
-          std::string(behaviors::estimator_info(behavior.estimator.type).name)};
+          std::string(estimator.name),
+          errors};
 }
 
 engine::LoopSettings loop_settings(const RunOptions& options, const sim::WorldDescription& world) {

@@ -82,10 +82,12 @@ bool behavior_is_there(const std::string& name, core::Diagnostics& diagnostics) 
 std::string require_named_file(const std::string& name, core::Diagnostics& diagnostics) {
   const std::vector<std::string> search = search_path();
   std::string path = find_behavior_file(name);
-  std::error_code ignored;
-  if (path != name || fs::exists(name, ignored)) return path;
+  if (path != name || core::is_readable_source(name)) return path;
   path = sim::find_world_file(name, search);
   if (path.empty()) path = model::find_robot_file(name, search);
+  std::error_code ignored;
+  // A folder hides no name; one that nothing else is called by is refused by who reads it.
+  if (path.empty() && fs::exists(name, ignored)) path = name;
   if (!path.empty()) return path;
   std::vector<std::string> known = core::names_in(search, "behaviors/library");
   for (const auto& [place, inside] : {std::pair("sim/worlds", ""), {"robots", "robot.yaml"}}) {
@@ -197,9 +199,10 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
   return pairs;
 }
 
-behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world) {
+behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world, bool held) {
   return {world.variation.least_friction().value_or(world.friction), world.physics.steps_per_tick,
-          world.actuators.command_delay + world.variation.most_command_delay()};
+          world.actuators.command_delay + world.variation.most_command_delay(),
+          world.constraints.empty() && !held ? world.name : ""};
 }
 
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,

@@ -96,8 +96,9 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(
 
 // What the physics checks take from a world, before a seed is drawn: the least friction and the
 // longest delay that can be drawn. More delay never makes a loop stable: its gain falls with
-// frequency, so that it crosses 1 once, and delay only takes phase from it there.
-behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world);
+// frequency, so that it crosses 1 once, and delay only takes phase from it there. `held`: something
+// else than the world holds the robot, a stand or a scenario.
+behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world, bool held);
 
 // Reports what the world needs and the robot lacks: links that it names, actuators; and springs of
 // its constraints and of a scenario's holds that physics cannot integrate.

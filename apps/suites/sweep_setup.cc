@@ -27,7 +27,7 @@ behaviors::PhysicsWorld load_and_check_world(const std::string& path,
   if (!diagnostics.has_errors()) sim::check_supported(world, diagnostics);
   const bool complete = !diagnostics.has_errors() && behavior != nullptr && behavior->has_robot;
   if (complete) check_world_fits(world, behavior->robot, diagnostics, lab::holds_of(scenario));
-  return physics_world(world);
+  return physics_world(world, !lab::holds_of(scenario).empty());
 }
 
 // Varied parameters of the world need a file as `base:`, so name the default world.

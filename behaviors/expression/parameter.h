@@ -19,9 +19,10 @@ struct ParameterInfo {
   double min = 0.0, max = 0.0;  // equal: unlimited
   bool live = false;
   std::string doc;
-  bool bare = false;                // written without unit: adopts the required dimension
-  bool variable = false;            // set by an action: reset at the start of every run, never live
-  bool gain = false;                // of a table of gains, of torque loops, or of the estimator
+  bool bare = false;      // written without unit: adopts the required dimension
+  bool variable = false;  // set by an action: reset at the start of every run, never live
+  bool gain = false;      // of a table of gains, of torque loops, or of the estimator
+  bool at_start = false;  // taken when the run starts: later values do nothing, never live
   std::vector<std::string> axes{};  // of a gain: names of the values (of a torque loop: joints)
   core::Mark mark{};                // of its name, or of its value in a gain table
 

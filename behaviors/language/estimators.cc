@@ -98,13 +98,14 @@ constexpr auto kContactKalman = measured_and(std::array{
                        "ground's height is unknown"},
     EstimatorParameter{"start_attitude", kNone, 0.01, 1e-6, 1.0,
                        "standard deviation at the start, rad, of roll and pitch by one sample of "
-                       "the accelerometer"},
+                       "the accelerometer",
+                       true},
     EstimatorParameter{"start_velocity", kVelocity, 0.05, 1e-6, 10.0,
-                       "standard deviation at the start"},
+                       "standard deviation at the start", true},
     EstimatorParameter{"start_gyro_bias", kRate, 0.5 * kDegree, 0.0, 1.0,
-                       "standard deviation at the start"},
+                       "standard deviation at the start", true},
     EstimatorParameter{"start_accelerometer_bias", kAcceleration, 0.03, 0.0, 10.0,
-                       "standard deviation at the start"},
+                       "standard deviation at the start", true},
     EstimatorParameter{"lost_after", kTime, 2.0, 0.0, 1e6,
                        "after a longer time without a foot that keeps its place there is no "
                        "estimate (`no_estimate`); 0: there always is"},
@@ -216,8 +217,8 @@ const EstimatorParameter* EstimatorInfo::find(std::string_view parameter) const 
 const core::KeyTable kEstimatorKeys = {
     .id = "estimator",
     .doc =
-        "Which estimator runs, and its parameters. All of them are live within their bounds, as "
-        "`estimator.NAME`.",
+        "Which estimator runs, and its parameters. They are live within their bounds, as "
+        "`estimator.NAME`, but for the `start_...`: an estimator takes those when it starts.",
     .keys = estimator_key_rows(),
     .part = true,
     .selector = "type",

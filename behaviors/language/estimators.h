@@ -10,12 +10,13 @@
 
 namespace footfall::behaviors {
 
-// A parameter, live between its bounds.
+// A parameter, live between its bounds unless the estimator takes it only when it starts.
 struct EstimatorParameter {
   std::string_view name;
   core::Dimension dimension;
   double value = 0.0, least = 0.0, most = 0.0;  // SI
   std::string_view doc;
+  bool at_start = false;
 };
 
 struct EstimatorInfo {

@@ -137,7 +137,8 @@ class EstimatorLoader {
     slot.slot = static_cast<int>(behavior.values.size());
     slot.min = parameter.least;
     slot.max = parameter.most;
-    slot.live = true;
+    slot.at_start = parameter.at_start;
+    slot.live = !parameter.at_start;
     slot.gain = true;
     slot.doc = parameter.doc;
     slot.mark = node == nullptr ? spec_.mark : node->mark;

@@ -89,6 +89,8 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"no-priority", kWarning, "a task without priority among others that have one"},
     {"no-script", kError, "an unreadable file of `scripts`"},
     {"no-sensor", kWarning, "errors of sensors that the robot lacks"},
+    {"no-support", kWarning,
+     "a first law without contacts in a world that does not hold the robot"},
     {"no-time", kWarning, "a time that parameters make negative, in a chart without a robot"},
     {"no-value", kWarning,
      "a condition that a state fails in which its signal has no value; an expression that never "

@@ -222,6 +222,13 @@ void add_values(const behaviors::Behavior& behavior, behaviors::ParameterPart pa
 // Completes 'it is not live, because ...'.
 std::string reason_not_live(const behaviors::ParameterInfo& info);
 
+// What a behavior says of its estimator with words: no values, so nothing that an edit can name.
+inline std::array<std::string_view, 2> estimator_choices() {
+  return {"estimator.type", "estimator.contact"};
+}
+inline constexpr std::string_view kChosenBefore =
+    "an estimator is chosen before a run starts: in the file, or with '--set'";
+
 // All reasons against a batch, naming parameter, value, unit and range; `revision`: the current
 // one.
 std::vector<std::string> reasons_against(const behaviors::Behavior& behavior,

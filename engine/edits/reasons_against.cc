@@ -42,7 +42,7 @@ void check_value(const ParameterInfo& info, int component, double value,
 
 void check_liveness(const ParameterInfo& info, EditSource source,
                     std::vector<std::string>& reasons) {
-  if (info.live || may_write_all(source)) return;
+  if (info.live || (may_write_all(source) && !info.at_start)) return;
   reasons.push_back(info.name + ": not live, because " + reason_not_live(info));
 }
 
@@ -90,6 +90,7 @@ void check_events(const Behavior& behavior, const EditBatch& batch,
 
 std::string reason_not_live(const ParameterInfo& info) {
   if (info.variable) return "the behavior's actions set it";
+  if (info.at_start) return "only the start takes it: '--set' of a run gives it before";
   if (info.gain) {
     return fmt::format("its table has no range for it: give one under '{}.ranges'",
                        info.of_torque_loop() ? "torque_loop" : "gains");

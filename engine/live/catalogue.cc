@@ -58,6 +58,12 @@ void fill_names(const Behavior& behavior, const LiveNames& names,
     catalogue.fixed.push_back(info.name);
     catalogue.fixed_reasons.push_back(reason_not_live(info));
   }
+  if (behavior.has_robot) {
+    for (const std::string_view choice : engine::estimator_choices()) {
+      catalogue.fixed.emplace_back(choice);
+      catalogue.fixed_reasons.emplace_back(engine::kChosenBefore);
+    }
+  }
   catalogue.fixed_count = count_of(catalogue.fixed);
   catalogue.events = names.event_names;
   catalogue.event_docs.resize(catalogue.events.size());

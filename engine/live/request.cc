@@ -88,7 +88,12 @@ EditBatch read_edit(const Behavior& behavior, const LiveNames& names,
     for (const footfall_lcm::change_t& change : request.changes) {
       const behaviors::ParameterPart part = behavior.find_parameter_part(change.name);
       if (part.parameter < 0) {
-        reasons.push_back(unknown("parameter", change.name, names.parameter_names));
+        const auto choices = estimator_choices();
+        const bool chosen =
+            behavior.has_robot && std::ranges::find(choices, change.name) != choices.end();
+        reasons.push_back(chosen
+                              ? fmt::format("{}: not live, because {}", change.name, kChosenBefore)
+                              : unknown("parameter", change.name, names.parameter_names));
         continue;
       }
       // `goal.y` already names a component; a component of it is an error.

@@ -221,7 +221,10 @@ class EstimatorRun {
       figures_.markers.pop_back();
     }
     const engine::EstimateQuality& quality = estimate_.quality;
-    const bool known = sensors_.sensor_truth;
+    // One that reads no IMU estimates nothing of it, nor judges itself.
+    const bool judges = behaviors::estimator_info(behavior_.estimator.type).needs_imu;
+    const bool known = judges && sensors_.sensor_truth;
+    if (!judges) figures_.heading_deviation = {kUnknown, kUnknown};
     figures_.gyro_bias =
         known ? norm_between(quality.gyro_bias, sensors_.true_gyro_bias) : kUnknown;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 
+#include "behaviors/language/estimators.h"
 #include "lab/figures/step_counter.h"
 
 namespace footfall::lab {
@@ -134,6 +135,19 @@ std::string torque_loops_text(const RunIdentity& id) {
                         loop.joints == 1 ? "" : "s");
   }
   return fmt::format("  torque loop  {} not used: the actuators are ideal in this world\n", text);
+}
+
+std::string estimator_text(const RunIdentity& id) {
+  std::string text = fmt::format("  estimator    {}", id.estimator);
+  if (id.sensor_errors != "unused") return text + "\n";
+  std::string others;  // that read them
+  for (const behaviors::EstimatorInfo& type : behaviors::estimator_types()) {
+    if (type.needs_imu) others += fmt::format("{}{}", others.empty() ? "" : " or ", type.name);
+  }
+  return text + fmt::format(
+                    ": the errors of the sensors of '{}' do not reach the state; they do with "
+                    "--set estimator.type={}\n",
+                    id.world, others);
 }
 
 Json torque_loops_json(const RunIdentity& id) {
@@ -264,6 +278,7 @@ Json summary_json(const RunIdentity& id, const RunResult& result, bool physics_o
   out["backend"] = id.backend;
   out["seed"] = id.seed;
   out["estimator"] = id.estimator;
+  out["sensor_errors"] = id.sensor_errors;
   out["end"] = run_end_name(result.end);
   out["fell"] = f.fell;
   out.update(figures_json(f));
@@ -355,7 +370,7 @@ std::string summary_text(const RunIdentity& id, const RunResult& result) {
   if (id.footholds) {
     text += fmt::format("  footholds    {} with a height drawn anew\n", *id.footholds);
   }
-  text += fmt::format("  estimator    {}\n", id.estimator);
+  text += estimator_text(id);
   if (!id.physics.empty()) text += fmt::format("  physics      {}\n", id.physics);
   return text;
 }

@@ -36,6 +36,9 @@ struct RunIdentity {
   // External aids: names of the world's constraints, and `hold of BODY` of a scenario.
   std::vector<std::string> constraints{};
   std::string estimator = "true_state";  // by the name of its type
+  // Whether the errors of the world's sensors reach the state: `none`, `used`, or `unused` by an
+  // estimator that reads no sensors.
+  std::string sensor_errors = "none";
   // Where the world has errors of the ground's height: how often a foot got another one.
   std::optional<std::int64_t> footholds{};
 };

@@ -224,6 +224,13 @@ std::vector<behaviors::SlotValue> read_changes(ScenarioContext& context, const Y
       continue;
     }
     ParameterInfo info = behavior.parameters[static_cast<std::size_t>(parameter)];
+    if (info.at_start) {
+      context.error(entry.key_mark, "misplaced-name",
+                    fmt::format("parameter '{}' is taken when the run starts: write it in the "
+                                "behavior, or under the scenario's own 'set'",
+                                info.name));
+      continue;
+    }
     if (edit && !info.live) {
       context.error(entry.key_mark, "misplaced-name",
                     fmt::format("parameter '{}' is not live: write it under 'set'{}", info.name,

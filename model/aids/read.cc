@@ -42,9 +42,7 @@ class SpringReader {
 
   void read_body(const YamlNode& node, BodySprings& out) const {
     if (!core::expect_scalar(node, "the name of a body", diagnostics_)) return;
-    const int file = node.mark.file;
-    const bool known = file >= 0 && file < diagnostics_.file_count();
-    out.body = {node.scalar, known ? diagnostics_.file(file) : "", node.mark};
+    out.body = {node.scalar, file_of(node.mark), node.mark};
   }
 
   void read_axes(const YamlNode& map, BodySprings& out) const {
@@ -81,6 +79,7 @@ class SpringReader {
                                        core::describe(*stiffness)));
       }
     }
+    rope.file = file_of(rope.mark);
     if (const YamlNode* damping = node.find("damping")) {
       rope.damping = core::read_bounded(*damping, kLinearDamping, 0.0, kAny, diagnostics_,
                                         "a damping in N s/m");
@@ -106,6 +105,11 @@ class SpringReader {
   }
 
  private:
+  std::string file_of(core::Mark mark) const {
+    const bool known = mark.file >= 0 && mark.file < diagnostics_.file_count();
+    return known ? diagnostics_.file(mark.file) : "";
+  }
+
   void read_place(const YamlNode& node, std::array<double, 3>& place) const {
     if (!node.is_sequence() || node.items.size() != place.size()) {
       core::report_expected(node, "three lengths [x, y, z]", diagnostics_);
@@ -137,6 +141,7 @@ class SpringReader {
                                        kind.stiffness_name, core::describe(*stiffness)));
       }
     }
+    out.file = file_of(out.mark);
     constexpr double kAny = std::numeric_limits<double>::infinity();
     if (const YamlNode* damping = node.find("damping")) {
       out.damping =

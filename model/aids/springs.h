@@ -29,6 +29,7 @@ struct AxisSpring {
   std::optional<std::array<double, 2>> travel;  // free within; nullopt: a spring both ways
   std::optional<double> at;                     // of the anchor; nullopt: where the body is
   core::Mark mark;                              // of the stiffness, else of the axis' map
+  std::string file;                             // of the mark; an overlay's values are its own
 };
 
 // A rope between a point of the body and a fixed place: a spring while it is taut, else nothing.
@@ -39,6 +40,7 @@ struct Rope {
   double stiffness = 0.0;         // N/m
   std::optional<double> damping;  // N s/m; nullopt: critical for the robot's mass
   core::Mark mark;                // of the stiffness, else of the map
+  std::string file;               // of the mark
 };
 
 struct BodySprings {

@@ -2,6 +2,7 @@
 #include "tests/support/matrix.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -156,6 +157,13 @@ Matrix solve(const Matrix& A, const Matrix& B, double threshold) {
   if (threshold > 0.0) lu.setThreshold(threshold);
   Matrix X(A.cols(), B.cols());
   view(X) = lu.solve(MatrixXd(view(B)));
+  return X;
+}
+
+Matrix least_squares(const Matrix& A, const Matrix& B) {
+  require(A.rows() == B.rows());
+  Matrix X(A.cols(), B.cols());
+  view(X) = Eigen::ColPivHouseholderQR<MatrixXd>(view(A)).solve(MatrixXd(view(B)));
   return X;
 }
 

@@ -54,6 +54,17 @@ class Matrix {
   std::vector<double> values_;
 };
 
+// A copy of a matrix of another kind, Eigen's: its products here are instantiated once for all
+// sizes.
+template <typename Other>
+Matrix dense(const Other& other) {
+  Matrix out(static_cast<int>(other.rows()), static_cast<int>(other.cols()));
+  for (int j = 0; j < out.cols(); ++j) {
+    for (int i = 0; i < out.rows(); ++i) out(i, j) = other(i, j);
+  }
+  return out;
+}
+
 Matrix operator+(Matrix a, const Matrix& b);
 Matrix operator-(Matrix a, const Matrix& b);
 Matrix operator-(Matrix a);
@@ -68,6 +79,8 @@ Matrix beside(const Matrix& left, const Matrix& right);
 // Eigen's default. Of a singular system one solution, if there is any.
 Matrix solve(const Matrix& A, const Matrix& B, double threshold = 0.0);
 Matrix inverse(const Matrix& A);
+// By QR with column pivoting, of an A of full column rank.
+Matrix least_squares(const Matrix& A, const Matrix& B);
 
 // By Jacobi SVD, largest first.
 std::vector<double> singular_values(const Matrix& A);

@@ -74,6 +74,23 @@ bool check_configurations(PhysicsContext& context) {
 
 }  // namespace
 
+void check_first_support(const Behavior& behavior, const std::string& unaided,
+                         core::Diagnostics& diagnostics) {
+  const FirstControl first = first_control(behavior);
+  if (unaided.empty() || first.control < 0 || first.control >= std::ssize(behavior.controls)) {
+    return;
+  }
+  const ControlSpec& control = behavior.controls[at(first.control)];
+  if (!control.contacts.empty() || control.tasks.count == 0) return;
+  const StateInfo& state = behavior.states[at(first.state)];
+  diagnostics.warning(
+      state.mark, "no-support",
+      fmt::format("'{}' begins the run and relies on no contact, but nothing in the world '{}' "
+                  "holds the robot: it falls at once; expected a world whose `constraints:` do, as "
+                  "a rope or a hoist",
+                  state.path, unaided));
+}
+
 void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
                    const PhysicsWorld& world) {
   if (!behavior.has_robot) return;
@@ -89,6 +106,7 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
                                     "and not in the others",
                                     kMaxJudged));
   }
+  check_first_support(behavior, world.unaided, diagnostics);
   check_references(context);
   check_feed_forward(context);
   check_gains(context);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "behaviors/compiled/behavior.h"
@@ -21,6 +22,8 @@ struct PhysicsWorld {
   std::optional<double> friction{};  // of the ground: with it a foot has the lesser of both
   int steps_per_tick = 2;
   double command_delay = 0.0;  // s, from the tick's command to the torque
+  // Name of a world in which nothing but its contacts bears the robot; empty: not known.
+  std::string unaided{};
 };
 
 // Evaluated at the nominal posture of the robot file and at kSeededPostures around it (postures.h):
@@ -29,6 +32,11 @@ struct PhysicsWorld {
 // be compiled.
 void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
                    const PhysicsWorld& world = {});
+
+// Its part of how a run begins: a warning where the first law has tasks and no contact. `unaided`
+// as in PhysicsWorld.
+void check_first_support(const Behavior& behavior, const std::string& unaided,
+                         core::Diagnostics& diagnostics);
 
 // check_physics() as LoadOptions::check: a model that cannot be compiled is one more error.
 std::function<void(const Behavior&, core::Diagnostics&)> physics_check(

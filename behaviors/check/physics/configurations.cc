@@ -282,6 +282,14 @@ std::map<int, int> controlling_states(const Behavior& behavior) {
   return states;
 }
 
+FirstControl first_control(const Behavior& behavior) {
+  if (behavior.states.empty()) return {};
+  const Walker walk(behavior);
+  std::vector<int> active;
+  walk.enter(0, {}, active);
+  return {active.back(), walk.weight(active)};
+}
+
 std::vector<ControlChange> control_changes(const Behavior& behavior) {
   if (behavior.states.empty()) return {};
   return Succession(behavior).all();

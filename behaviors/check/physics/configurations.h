@@ -14,6 +14,14 @@ namespace footfall::behaviors {
 // declares it. Controls without configuration are omitted.
 std::map<int, int> controlling_states(const Behavior& behavior);
 
+// The atomic state in which a run begins, before any transition (the last one of parallel regions),
+// and its control. No history, no states: -1.
+struct FirstControl {
+  int state = -1;
+  int control = -1;
+};
+FirstControl first_control(const Behavior& behavior);
+
 // A transition that changes the control.
 struct ControlChange {
   int transition = 0;  // into Behavior::transitions

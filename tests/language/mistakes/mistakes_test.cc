@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "behaviors/check/actuators/drives.h"
+#include "behaviors/check/physics/check.h"
 #include "behaviors/loader.h"
 #include "core/diagnostics/ids.h"
 #include "lab/scenario/loader.h"
@@ -71,6 +72,14 @@ void load_scenario(const std::string& path, core::Diagnostics& diagnostics) {
   world.variation = lab::variation_over(scenario, world.variation);
   lab::warn_late_push(scenario, world.variation, diagnostics);
   lab::warn_alike_seeds(scenario, world.variation, diagnostics);
+  core::Diagnostics of_behavior;  // positions refer to the behavior's files
+  for (const std::string& file : scenario.behavior_files) of_behavior.add_file(file);
+  behaviors::check_first_support(*scenario.behavior, world.constraints.empty() ? world.name : "",
+                                 of_behavior);
+  for (core::Diagnostic item : of_behavior.all()) {
+    item.mark.file = diagnostics.add_file(of_behavior.file(item.mark.file));
+    diagnostics.add(item);
+  }
 }
 
 void load(const std::string& path, const std::string& text,

@@ -83,6 +83,10 @@ TEST(EstimatorReplay, TakesTheCoMsVelocityFromTheLogWhereSensorsHaveErrors) {
   log.inputs.names = names;
   log.inputs.columns = after.names();
   const lab::EstimationFigures f = lab::replay_estimator(log, {"true_state", {}, 0.0});
+  // The true state estimates no errors of sensors: nothing to compare with those of the log.
+  EXPECT_TRUE(std::isnan(f.gyro_bias) && std::isnan(f.accelerometer_bias));
+  EXPECT_TRUE(std::isnan(f.gyro_bias_error[0]) && std::isnan(f.heading_deviation[1]));
+  EXPECT_FALSE(says(lab::estimation_text(f), "bias"));
   for (std::size_t k = 0; k < 3; ++k) {  // the robot's own speed is below 1 m/s
     EXPECT_NEAR(f.com_velocity[k].rms(), static_cast<double>(k + 1), 0.5);
   }

@@ -138,5 +138,30 @@ TEST_F(Constraints, ASpringThatPhysicsCannotIntegrateIsReportedWithTheBound) {
             "only with stiffness below 3.89e+08 N/m\n");
 }
 
+// The body stands in the base, the values that physics refuses in the file over it.
+TEST_F(Constraints, AValueOverABaseIsReportedInTheFileThatHasIt) {
+  const std::string base = (folder_ / "base.yaml").string();
+  std::ofstream(base) << "world: 1\n"
+                         "constraints:\n"
+                         "  aid:\n"
+                         "    body: torso\n"
+                         "    z: {stiffness: 1 N/m, damping: 0}\n"
+                         "  harness:\n"
+                         "    body: torso\n"
+                         "    rope: {to: [0 m, 0 m, 4 m], length: 2 m, stiffness: 1 N/m}\n";
+  const WorldDescription world = load(
+      "base: base.yaml\n# A comment.\nconstraints:\n"
+      "  aid: {z: {stiffness: 1e9 N/m}}\n  harness: {rope: {stiffness: 1e10 N/m}}\n");
+  ASSERT_EQ(diagnostics_.error_count(), 0) << diagnostics_.to_string();
+  check_springs(world, {}, tests::load_hume(), diagnostics_);
+  ASSERT_EQ(diagnostics_.all().size(), 2U) << diagnostics_.to_string();
+  for (const core::Diagnostic& item : diagnostics_.all()) {
+    EXPECT_EQ(diagnostics_.file(item.mark.file), (folder_ / "aided.yaml").string());
+    const bool rope = item.text.find("the rope") != std::string::npos;
+    EXPECT_EQ(item.mark.line, rope ? 6 : 5) << item.text;
+    EXPECT_EQ(item.mark.column, rope ? 31 : 24) << item.text;
+  }
+}
+
 }  // namespace
 }  // namespace footfall::sim

@@ -45,6 +45,34 @@ class Check(Case):
     def test_a_missing_file(self):
         self.refused(self.footfall("check", "no.yaml"), 2, "no.yaml")
 
+    def test_a_folder_hides_no_name(self):
+        for name in ("lab", "balance", "hume"):
+            self.write(f"{name}/other.txt", "")
+            for command in ("check", "config"):
+                result = self.footfall(command, name)
+                self.assertEqual((result.returncode, result.stderr), (0, ""), name)
+        self.write("nothing/other.txt", "")
+        self.refused(self.footfall("check", "nothing"), 2, "nothing", "directory")
+
+    def test_a_world_says_what_only_a_robot_judges(self):
+        rope = "{to: [0 m, 0 m, 4 m], length: 2 m, stiffness: %s}"
+        base = self.write("w/base.yaml", "world: 1\nconstraints:\n  aid:\n    body: torso\n    rope: " +
+                          rope % "20 kN/m" + "\n")
+        over = self.write("w/over.yaml", "# A remark.\n\nworld: 1\nbase: base.yaml\nconstraints:\n"
+                          "  aid: {rope: {stiffness: 1e10 N/m}}\n")
+        said = self.footfall("check", over)
+        self.assertEqual((said.returncode, said.stderr), (0, ""))
+        self.assertIn("over.yaml: ok; --robot NAME judges its bodies, constraints", said.stdout)
+        files = json.loads(self.footfall("check", "--json", over, "ideal").stdout)["files"]
+        self.assertEqual([f["not_judged"] for f in files], ["bodies, constraints", ""])
+        self.refused(self.footfall("check", "--robot", "hume", over), 2, "over.yaml:6:27", "the rope of 'torso' stably")
+        self.assertEqual(self.footfall("check", "--robot", "hume", base).stdout.strip(), f"{base}: ok")
+        self.refused(self.footfall("check", "--robot", "huem", base), 2, "did you mean 'hume'?")
+
+    def test_a_robot_is_given_to_behaviors_and_worlds_only(self):
+        self.refused(self.footfall("check", "--robot", "hume", "hume"), 2, "--robot", "'hume' is a robot")
+        self.assertEqual(self.footfall("check", "--robot", "hume", self.write("b.yaml", STAND)).returncode, 0)
+
     def test_physics_that_cannot_be_stops_check_and_run_before_anything_moves(self):
         turning = STAND.replace("tasks: {", "tasks: {turn: {type: body_orientation, axes: [yaw], reference: 0, "
                                 "gains: {kp: 1}}, ").replace("[right_foot, left_foot]", "[right_foot]")

@@ -47,6 +47,17 @@ class Logs(unittest.TestCase):
         self.assertIn("warning: the log 'cut.mcap' was cut off", done.stderr)
         self.assertLess(int(done.stdout.split()[1]), 1200)
 
+    def test_an_estimator_tells_only_what_it_estimates(self):
+        done = self.footfall("replay", "a", "--estimator", "true_state", "--from", "0s", "--json")
+        said = json.loads(done.stdout)
+        self.assertIsNone(said["gyro_bias_radps"])
+        self.assertIsNone(said["heading_deviation_rad"]["to"])
+
+    def test_a_value_set_twice_is_refused(self):
+        self.refused(self.footfall("replay", "a", "--estimator", "contact_kalman", "--set", "estimator.foot_noise=1 mm",
+                                   "--set", "estimator.foot_noise=2 mm"),
+                     "'estimator.foot_noise' is set twice, to '1 mm' and to '2 mm'")
+
     def test_two_equal_runs_do_not_differ(self):
         self.assertEqual((self.folder / "a" / "log.mcap").read_bytes(),
                          (self.folder / "again" / "log.mcap").read_bytes())

@@ -30,6 +30,41 @@ machine:
 """
 
 
+HANGS = """behavior: 1
+robot: hume
+machine:
+  contacts: []
+  tasks: {posture: {type: joint_posture, priority: 1, gains: {kp: 800, kd: 57}, reference: {trajectory: hold}}}
+  states: {hang: {after: 20 ms, to: end}, end: {type: final}}
+"""
+
+
+class World(Case):
+    def test_sensor_errors_that_nothing_reads_are_told_once(self):
+        path = self.write("b.yaml", STAND)
+        for world, estimator, errors in (("flat", "true_state", "none"), ("lab", "true_state", "unused"),
+                                         ("lab", "contact_kalman", "used")):
+            arguments = ["run", path, "--world", world, "--set", f"estimator.type={estimator}", "--for", "20ms", "--no-log"]
+            said = self.footfall(*arguments)
+            self.assertEqual(said.stdout.count(f"  estimator    {estimator}"), 1)
+            self.assertEqual(said.stdout.count("of 'lab' do not reach the state"), int(errors == "unused"), said.stdout)
+            summary = json.loads(self.footfall(*arguments, "--json").stdout)
+            self.assertEqual((summary["estimator"], summary["sensor_errors"]), (estimator, errors))
+            self.assertEqual(self.footfall(*arguments, "--quiet").stdout, "")
+
+    def test_a_robot_that_nothing_holds_at_the_start_is_a_warning(self):
+        path = self.write("b.yaml", HANGS)
+        for world, warned in (("flat", 1), ("harness", 0), ("hoist", 0)):
+            said = self.footfall("run", path, "--world", world, "--no-log", "--quiet")
+            self.assertEqual(said.stderr.count("relies on no contact"), warned, said.stderr)
+        said = self.footfall("run", path, "--backend", "stub", "--no-log", "--quiet")
+        self.assertNotIn("relies on no contact", said.stderr)
+        scenario = "scenario: 1\nbehavior: b.yaml\nfor: 20 ms\n"
+        self.assertIn("warning: 'hang' begins", self.footfall("check", self.write("s.yaml", scenario)).stderr)
+        held = self.write("h.yaml", scenario + "script: [{at: 0 s, hold: torso}]\n")
+        self.assertNotIn("relies on no contact", self.footfall("check", held).stderr)
+
+
 class BadInput(Case):
     def test_unknown_robot(self):
         self.refused(self.run_it("balance", "--robot", "huma"), 2, "huma")

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <random>
 
 #include "core/random.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 namespace {
@@ -55,7 +55,8 @@ class Draw {
   Covariance covariance() {
     Covariance M;
     for (double& x : M.reshaped()) x = normal_(engine_);
-    return 1e-3 * M * M.transpose();
+    const Matrix P = 1e-3 * dense(M) * dense(M).transpose();
+    return Covariance((0.5 * (P + P.transpose())).data());
   }
 
  private:
@@ -109,9 +110,10 @@ TEST(InvariantFilter, TheCovarianceIsPropagatedByTheErrorsOwnMap) {
   Filter filter = truth;
   filter.propagate_covariance(noise, kGravity, kStep);
   const Covariance change = (filter.covariance() - truth.covariance()) / kStep;
-  const Covariance expected = (F * truth.covariance() * F.transpose() - truth.covariance()) / kStep;
+  const Matrix P = dense(truth.covariance());
+  const Matrix expected = (dense(F) * P * dense(F).transpose() - P) / kStep;
   // Second order: dt times squares of F's entries (at most 1e2) times the covariance's (3e-2).
-  EXPECT_LT((change - expected).cwiseAbs().maxCoeff(), 1e-3 * expected.cwiseAbs().maxCoeff());
+  EXPECT_LT((dense(change) - expected).max_abs(), 1e-3 * expected.max_abs());
   EXPECT_EQ(filter.covariance(), filter.covariance().transpose());
 }
 
@@ -134,7 +136,8 @@ TEST(InvariantFilter, NoiseEntersByTheSameMap) {
   for (int i = 0; i < 2; ++i) {
     by_gyro.middleRows<3>(Filter::kFeet + 3 * i) = engine::skew(f.foot(i)) * R;
   }
-  Covariance expected = 0.1 * 0.1 * 1e-3 * dt * by_gyro * by_gyro.transpose();
+  const Matrix turned = 0.1 * 0.1 * 1e-3 * dt * dense(by_gyro) * dense(by_gyro).transpose();
+  Covariance expected(turned.data());
   expected.diagonal().segment<3>(Filter::kV).array() += 0.2 * 0.2 * 1e-3 * dt;
   expected.diagonal().segment<3>(Filter::kGyroBias).array() += 0.3 * 0.3 * dt;
   expected.diagonal().segment<3>(Filter::kAccelerometerBias).array() += 0.4 * 0.4 * dt;
@@ -164,12 +167,12 @@ TEST(InvariantFilter, AFootCorrectsAsTheDenseEquationsDo) {
   Filter f = truth;
   f.add_error(1e-3 * draw.error());
   const Filter before = f;
-  const Covariance P = f.covariance();
-  const Matrix3d S = H * P * H.transpose() + 0.01 * 0.01 * Matrix3d::Identity();
-  const Eigen::Matrix<double, Filter::kSize, 3> K = P * H.transpose() * S.inverse();
+  const Matrix P = dense(f.covariance()), Ht = dense(H).transpose();
+  const Matrix S = dense(H) * P * Ht + 0.01 * 0.01 * Matrix::identity(3);
+  const Matrix K = P * Ht * inverse(S);
   f.correct_by_foot(1, h, 0.01, 0.0);
-  EXPECT_LT((error_of(f, before) + K * residual(before)).norm(), 1e-7);
-  EXPECT_LT((f.covariance() - (P - K * H * P)).norm(), 1e-8);
+  EXPECT_LT((dense(error_of(f, before)) + K * dense(residual(before))).norm(), 1e-7);
+  EXPECT_LT((dense(f.covariance()) - (P - K * dense(H) * P)).norm(), 1e-8);
 }
 
 TEST(InvariantFilter, AHeightCorrectsAsTheDenseEquationsDo) {
@@ -186,13 +189,13 @@ TEST(InvariantFilter, AHeightCorrectsAsTheDenseEquationsDo) {
     H[k] = (plus.foot(0)[2] - minus.foot(0)[2]) / (2.0 * kSize);
   }
   Filter f = truth;
-  const Covariance P = f.covariance();
-  const double S = (H * P * H.transpose())(0, 0) + 0.02 * 0.02;
-  const Error K = P * H.transpose() / S;
+  const Matrix P = dense(f.covariance()), Ht = dense(H).transpose();
+  const double S = dot(Ht, P * Ht) + 0.02 * 0.02;
+  const Matrix K = P * Ht / S;
   const double z = truth.foot(0)[2] - 1e-3;
   f.correct_height(0, z, 0.02);
-  EXPECT_LT((error_of(f, truth) + 1e-3 * K).norm(), 1e-7);
-  EXPECT_LT((f.covariance() - (P - K * H * P)).norm(), 1e-8);
+  EXPECT_LT((dense(error_of(f, truth)) + 1e-3 * K).norm(), 1e-7);
+  EXPECT_LT((dense(f.covariance()) - (P - K * dense(H) * P)).norm(), 1e-8);
 }
 
 TEST(InvariantFilter, AFootBeyondTheGateIsToldAndNotUsed) {
@@ -350,7 +353,7 @@ TEST(InvariantFilter, TheCovarianceIsThatOfTheErrors) {
       }
     }
     const Error error = error_of(f, truth);
-    sum += error.dot(f.covariance().ldlt().solve(error));
+    sum += dot(dense(error), solve(dense(f.covariance()), dense(error)));
   }
   EXPECT_NEAR(sum / kRuns, 21.0, 4.0 * std::sqrt(42.0 / kRuns));
 }

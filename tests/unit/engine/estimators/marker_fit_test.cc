@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "core/random.h"
 #include "engine/estimators/parts/marker_gate.h"
 #include "tests/support/hume.h"
+#include "tests/support/matrix.h"
 
 namespace footfall::tests {
 namespace {
@@ -62,10 +62,10 @@ StackedFit stacked_fit(const std::vector<MarkerPair>& pairs, const Matrix3d& pre
     M(3 * n + k, 3 + k) = lambda;
     y[3 * n + k] = lambda * predicted(k / 3, k % 3);
   }
-  const Eigen::VectorXd x = M.colPivHouseholderQr().solve(y);
+  const Matrix x = least_squares(dense(M), dense(y));
   StackedFit fit;
-  fit.t = x.head<3>();
-  for (Eigen::Index k = 0; k < 9; ++k) fit.A(k / 3, k % 3) = x[3 + k];
+  fit.t = Vector3d(x.data());
+  for (Eigen::Index k = 0; k < 9; ++k) fit.A(k / 3, k % 3) = x(static_cast<int>(3 + k));
   return fit;
 }
 
