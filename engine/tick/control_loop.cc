@@ -67,6 +67,11 @@ void ControlLoop::find_state() {
   if (few) {
     text += " (in " + std::to_string(reads) + " reads motion capture sees " + std::to_string(most) +
             " markers at most, 3 are needed)";
+  } else if (info.needs_mocap) {
+    text +=
+        " (" + std::to_string(most) +
+        " markers are seen, but they are older than `oldest_frame`, on a line, or not where the "
+        "robot has them: `marker_gate`)";
   }
   throw NoState(text, few);
 }

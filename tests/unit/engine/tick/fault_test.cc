@@ -274,9 +274,10 @@ TEST(Faults, AStartWaitsForAFrameThatShowsEnoughMarkers) {
   const auto start = [](int hidden, bool waits) {
     StubRig rig(kMeasured, 1.0, nullptr, [](behaviors::Behavior& b) { b.robot.mocap_age = 10e-3; });
     int reads = 0;
+    const model::ControlModel model(rig.behavior->robot);
     rig.hardware->spoil = [&](hal::Sensors& s, std::int64_t) {
       for (std::size_t m = 0; m < 4; ++m) {
-        s.marker[m] = {m == 1 ? 0.1 : 0.0, m == 2 ? 0.1 : 0.0, m == 3 ? 0.1 : 0.0};
+        s.marker[m] = model.mounts().markers[m].p_BM;
         s.marker_seen[m] = m < 2 || reads >= hidden;
       }
       ++reads;
