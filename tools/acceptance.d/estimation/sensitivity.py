@@ -47,7 +47,11 @@ def main():
     for case, steps in results.items():
         print(f"{case:20} {reached[case]:2} of 10 at {CAP}, median {min(CAP, statistics.median(steps)):.0f}: "
               f"{' '.join(map(str, sorted(min(CAP, s) for s in steps)))}", file=sys.stderr)
-    low = [case for case, steps in results.items() if case not in HARD and statistics.median(steps) < CAP]
+    # A push's size is one case, from four sides: step 20 stands on one foot, and a push to its outside is the worst.
+    sized = {}
+    for case, steps in results.items():
+        sized.setdefault(case.rsplit(" ", 1)[0] if case in PUSHES else case, []).extend(steps)
+    low = [case for case, steps in sized.items() if case not in HARD and statistics.median(steps) < CAP]
     pushed = sum(reached[case] for case in PUSHES[8:])
     short = ", ".join(f"{case} {n}" for case, n in reached.items() if n < 10)
     finish(f"{len(results)} cases of 10 seeds: medians below {CAP}: {', '.join(low) or 'none'}; 6 N s {pushed} of 40; "
