@@ -29,6 +29,7 @@ struct InternalCommand {
   int contact_b = 0;
   double reference = 0.0;  // N, force at each contact (`mean` convention)
   double feedback = 0.0;   // K_F on the measured force
+  double bandwidth = 0.0;  // Hz, of the measured force's low-pass; 0: none
   double scale = 1.0;      // mean force over what the behavior writes: 0.5 for `sum`
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/index.h"
 
@@ -22,6 +23,10 @@ int place_in(const ControlSet& set, int contact) noexcept {
     if (set.contacts[at(i)] == contact) return i;
   }
   return -1;
+}
+
+std::size_t pair_of(int a, int b) noexcept {
+  return at(std::min(a, b) * core::kMaxContacts + std::max(a, b));
 }
 
 bool named(const ControlSet& set, int a, int b) noexcept {
@@ -60,6 +65,8 @@ void WholeBodyController::compute(const ActiveControl& control, std::int64_t tic
   }
   solve_law(primary_, control.primary, tick, tau_measured, result_.axes.data());
 
+  if (both) keep_filtered(other_, control.other, tick);
+  keep_filtered(primary_, control.primary, tick);
   const double w = both && !frozen ? control.other_weight : 0.0;
   const WboscSolution& a = primary_.solution();
   const WboscSolution& b = other_.solution();
@@ -81,7 +88,7 @@ void WholeBodyController::solve_law(Wbosc& solver, const ControlSet& set, std::i
   problem.tau_measured = tau_measured;
   assemble_contacts(problem, set);
   assemble_tasks(problem, set, tick, axes);
-  assemble_internal(problem, set);
+  assemble_internal(problem, set, tick);
   solver.solve();
 }
 
@@ -139,8 +146,10 @@ void WholeBodyController::tension_row(WboscProblem& problem, const ControlSet& s
   }
 }
 
-void WholeBodyController::assemble_internal(WboscProblem& problem,
-                                            const ControlSet& set) const noexcept {
+// The low-pass of a pair that was not held in the last tick begins at its reference: feedback comes
+// in with the low-pass's own time, whatever the torques before were.
+void WholeBodyController::assemble_internal(WboscProblem& problem, const ControlSet& set,
+                                            std::int64_t tick) const noexcept {
   int row = 0;
   for (int i = 0; i < set.internal_count; ++i) {
     const InternalCommand& c = set.internals[at(i)];
@@ -148,6 +157,11 @@ void WholeBodyController::assemble_internal(WboscProblem& problem,
     tension_row(problem, set, row, c.contact_a, c.contact_b);
     problem.F_int[at(row)] = c.reference;
     problem.K_F[at(row)] = c.feedback;
+    const Tension& last = tension_[pair_of(c.contact_a, c.contact_b)];
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    problem.measured_share[at(row)] =
+        c.bandwidth > 0.0 ? -std::expm1(-kTurn * c.bandwidth * period_) : 1.0;
+    problem.measured_before[at(row)] = last.tick == tick - 1 ? last.filtered : c.reference;
     ++row;
   }
   problem.named_internal_rows = row;
@@ -159,10 +173,23 @@ void WholeBodyController::assemble_internal(WboscProblem& problem,
       tension_row(problem, set, row, a, b);
       problem.F_int[at(row)] = 0.0;
       problem.K_F[at(row)] = 0.0;
+      problem.measured_share[at(row)] = 1.0;
+      problem.measured_before[at(row)] = 0.0;
       ++row;
     }
   }
   problem.internal_rows = row;
+}
+
+void WholeBodyController::keep_filtered(const Wbosc& solver, const ControlSet& set,
+                                        std::int64_t tick) noexcept {
+  int row = 0;
+  for (int i = 0; i < set.internal_count; ++i) {
+    const InternalCommand& c = set.internals[at(i)];
+    if (place_in(set, c.contact_a) < 0 || place_in(set, c.contact_b) < 0) continue;
+    tension_[pair_of(c.contact_a, c.contact_b)] = {solver.solution().internal_filtered[at(row++)],
+                                                   tick};
+  }
 }
 
 void WholeBodyController::sample_frozen_force(const ActiveControl& control) noexcept {

@@ -64,6 +64,7 @@ class WholeBodyController {
   void take_over(const WholeBodyController& old, const std::vector<int>& instances) noexcept {
     memory_.take_over(old.memory_, instances);
     frozen_force_ = old.frozen_force_;
+    tension_ = old.tension_;
   }
 
   const ControllerResult& result() const noexcept { return result_; }
@@ -78,7 +79,9 @@ class WholeBodyController {
   void assemble_contacts(WboscProblem& problem, const ControlSet& set) const noexcept;
   void assemble_tasks(WboscProblem& problem, const ControlSet& set, std::int64_t tick,
                       AxisEvaluation* axes) noexcept;
-  void assemble_internal(WboscProblem& problem, const ControlSet& set) const noexcept;
+  void assemble_internal(WboscProblem& problem, const ControlSet& set,
+                         std::int64_t tick) const noexcept;
+  void keep_filtered(const Wbosc& solver, const ControlSet& set, std::int64_t tick) noexcept;
   void tension_row(WboscProblem& problem, const ControlSet& set, int row, int a,
                    int b) const noexcept;
   void sample_frozen_force(const ActiveControl& control) noexcept;
@@ -96,6 +99,13 @@ class WholeBodyController {
   Wbosc other_;
   std::array<AxisEvaluation, core::kMaxAxes> other_axes_{};
   std::array<std::array<double, 3>, core::kMaxContacts> frozen_force_{};
+  // Of each pair of contacts, the first one the smaller: its measured tension after the low-pass in
+  // the last tick that had it.
+  struct Tension {
+    double filtered = 0.0;  // N, mean convention
+    std::int64_t tick = -2;
+  };
+  std::array<Tension, static_cast<std::size_t>(core::kMaxContacts* core::kMaxContacts)> tension_{};
   ControllerResult result_;
 };
 

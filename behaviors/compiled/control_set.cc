@@ -33,7 +33,7 @@ void fill_control_set(const Behavior& behavior, const ControlSpec& spec, tasks::
   for (int k = spec.internals.first; k < spec.internals.end(); ++k) {
     const InternalSpec& internal = behavior.internals[at(k)];
     set.internals[at(set.internal_count++)] = {internal.instance, internal.contact_a,
-                                               internal.contact_b, 0.0, 0.0};
+                                               internal.contact_b};
   }
 }
 

@@ -67,11 +67,15 @@ struct TaskSpec {
   core::Mark mark;  // of the task's name
 };
 
+// Of the low-pass of a measured internal force, where a behavior names none.
+inline constexpr double kInternalBandwidth = 20.0;  // Hz
+
 struct InternalSpec {
   int instance = 0;  // into Behavior::internal_instances
   int contact_a = 0, contact_b = 0;
   int reference = -1;  // expression, N at each contact
   int feedback = -1;   // expression, -1: 0
+  int bandwidth = -1;  // expression, Hz, -1: kInternalBandwidth
   double scale = 1.0;  // of the reference: 0.5 for the `sum` convention
   core::Mark mark;     // of its reference
 };

@@ -106,6 +106,9 @@ constexpr KeySpec kInternalRows[] = {
     key("reference", computed(quantity(kForce)), "positive pushes the contacts apart").required(),
     key("feedback", computed(quantity(kNone)), "gain on the error of the measured force")
         .otherwise("0"),
+    key("bandwidth", computed(quantity(kRate, "a frequency in Hz")),
+        "of the first-order low-pass of the measured force that is fed back; 0 Hz: none")
+        .otherwise("20 Hz"),
     key("convention", choice(kConventionRows), "meaning of `reference`").otherwise("mean"),
     key("doc", text_of("a text"), "its purpose, in one line"),
 };

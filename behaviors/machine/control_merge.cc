@@ -134,8 +134,11 @@ void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& s
   set.internal_count = spec.internals.count;
   for (int k = 0; k < spec.internals.count; ++k) {
     const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
-    set.internals[at(k)] = {internal.instance, internal.contact_a, internal.contact_b, 0.0, 0.0,
-                            internal.scale};
+    set.internals[at(k)] = {.instance = internal.instance,
+                            .contact_a = internal.contact_a,
+                            .contact_b = internal.contact_b,
+                            .bandwidth = kInternalBandwidth,
+                            .scale = internal.scale};
   }
 }
 
@@ -224,6 +227,7 @@ void ControlMerge::advance(Bank& bank, tasks::ControlSet& set) noexcept {
         internal.scale *
         value_or(internal.reference, command.reference / internal.scale, bank, nullptr);
     command.feedback = value_or(internal.feedback, command.feedback, bank, nullptr);
+    command.bandwidth = value_or(internal.bandwidth, command.bandwidth, bank, nullptr);
   }
 }
 

@@ -76,8 +76,12 @@ void Wbosc::add_internal_forces() noexcept {
       measured += problem_.W_int[extent(i * nc + c)] * f1[c];
     }
     double wanted = problem_.F_int[extent(i)];
-    if (problem_.tau_measured) wanted += problem_.K_F[extent(i)] * (wanted - measured);
-    solution_.internal_measured[extent(i)] = problem_.tau_measured ? measured : now;
+    if (!problem_.tau_measured) measured = now;
+    const double before = problem_.measured_before[extent(i)];
+    const double filtered = before + problem_.measured_share[extent(i)] * (measured - before);
+    if (problem_.tau_measured) wanted += problem_.K_F[extent(i)] * (wanted - filtered);
+    solution_.internal_measured[extent(i)] = measured;
+    solution_.internal_filtered[extent(i)] = filtered;
     rhs_[extent(i)] = wanted - now;
     internal_order_[extent(i)] = i;
   }

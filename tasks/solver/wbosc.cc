@@ -38,12 +38,15 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   problem_.W_int.assign(extent(sizes.internal_rows * sizes.contact_rows), 0.0);
   problem_.F_int.assign(extent(sizes.internal_rows), 0.0);
   problem_.K_F.assign(extent(sizes.internal_rows), 0.0);
+  problem_.measured_share.assign(extent(sizes.internal_rows), 1.0);
+  problem_.measured_before.assign(extent(sizes.internal_rows), 0.0);
   solution_.asked.assign(extent(sizes.na), 0.0);
   solution_.tau.assign(extent(sizes.na), 0.0);
   solution_.f.assign(extent(sizes.contact_rows), 0.0);
   solution_.achieved.assign(extent(sizes.task_rows), 0.0);
   solution_.internal.assign(extent(sizes.internal_rows), 0.0);
   solution_.internal_measured.assign(extent(sizes.internal_rows), 0.0);
+  solution_.internal_filtered.assign(extent(sizes.internal_rows), 0.0);
   solution_.level_rows.assign(extent(sizes.levels), 0);
   solution_.level_rank.assign(extent(sizes.levels), 0);
   solution_.level_condition.assign(extent(sizes.levels), 1.0);

@@ -61,6 +61,8 @@ struct WboscProblem {
   std::vector<double> W_int;     // internal_rows x contact_rows, acts on f (ground on robot)
   std::vector<double> F_int;     // wanted W_int f
   std::vector<double> K_F;       // feedback on W_int f(tau_measured), 0: none
+  // Low-pass of what is fed back: before + share (W_int f(tau_measured) - before); share 1: none.
+  std::vector<double> measured_share, measured_before;
   const double* tau_measured = nullptr;  // na; nullptr: no feedback
 };
 
@@ -76,6 +78,7 @@ struct WboscSolution {
   std::vector<double> achieved;  // task_rows: J q̈ + J̇ q̇ under tau
   std::vector<double> internal;  // internal_rows: W_int f under tau
   std::vector<double> internal_measured;  // internal_rows: W_int f under tau_measured
+  std::vector<double> internal_filtered;  // internal_rows: the same after its low-pass
   std::vector<int> level_rows;            // levels: rows of a weight above 0
   std::vector<int> level_rank;            // levels
   // levels: the longest row of all levels over the smallest pivot that this level keeps (whitened

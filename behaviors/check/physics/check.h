@@ -22,6 +22,7 @@ struct PhysicsWorld {
   std::optional<double> friction{};  // of the ground: with it a foot has the lesser of both
   int steps_per_tick = 2;
   double command_delay = 0.0;  // s, from the tick's command to the torque
+  bool series_elastic = false;
   // Name of a world in which nothing but its contacts bears the robot; empty: not known.
   std::string unaided{};
 };

@@ -1,16 +1,17 @@
 // Feedback of internal forces that the loop cannot bear; see parts.h.
 //
 // The torque measured at a tick is what acted in the physics step before it. With a delay of d of
-// the S steps of a period it is the command n = ceil((d + 1) / S) = 1 + floor(d / S) periods ago.
-// With F = F_ref + K_F (F_ref - F_measured) ([Kim16] eqs. (4)-(5) with E7) a
-// deviation is multiplied by -K_F every n periods: it dies out exactly if |K_F| < 1, whatever n is.
-// An actuator with a bandwidth of its own would bear more; none is simulated.
+// the S steps of a period it is the command n = ceil((d + 1) / S) = 1 + floor(d / S) periods ago,
+// and what is fed back, F = F_ref + K_F (F_ref - F_measured) ([Kim16] eqs. (4)-(5) with E7), has
+// gone through a low-pass: sampled_loop.h. A series-elastic actuator's own lag is not in that:
+// there the loop is known to be stable below 1 alone, whatever the low-pass.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
 
 #include "behaviors/check/physics/parts.h"
+#include "behaviors/check/physics/sampled_loop.h"
 #include "core/index.h"
 
 namespace footfall::behaviors {
@@ -32,16 +33,22 @@ class FeedbackCheck {
 
   void judge(const InternalSpec& spec) {
     if (spec.feedback < 0) return;
-    const Dependence needs = dependence_of(b(), spec.feedback);
+    Dependence needs = dependence_of(b(), spec.feedback);
+    if (spec.bandwidth >= 0) {
+      const Dependence more = dependence_of(b(), spec.bandwidth);
+      if (!more.fixed()) return;
+      needs.parameters.insert(needs.parameters.end(), more.parameters.begin(),
+                              more.parameters.end());
+    }
     if (!needs.fixed()) return;
-    if (report(spec, values_.of(spec.feedback), Severity::error, {})) return;
+    if (report(spec, values_, true, {})) return;
     for (const int parameter : needs.parameters) {
       const ParameterInfo& info = b().parameters[at(parameter)];
       if (!info.live || !info.has_range()) continue;
       for (const double end : {info.min, info.max}) {
         StaticValues edited(b());
         for (int i = 0; i < info.size; ++i) edited.parameters()[at(info.slot + i)] = end;
-        if (report(spec, edited.of(spec.feedback), Severity::warning,
+        if (report(spec, edited, false,
                    fmt::format(" at the end of the range of '{}'", info.name))) {
           break;
         }
@@ -49,20 +56,38 @@ class FeedbackCheck {
     }
   }
 
-  bool report(const InternalSpec& spec, std::optional<double> feedback, Severity severity,
+  // `now`: the values with which the run begins, else an end of a range.
+  bool report(const InternalSpec& spec, const StaticValues& values, bool now,
               const std::string& where) {
-    if (!feedback || std::abs(*feedback) < 1.0) return false;
+    const auto feedback = values.of(spec.feedback);
+    const auto bandwidth =
+        spec.bandwidth >= 0 ? values.of(spec.bandwidth) : std::optional(kInternalBandwidth);
+    if (!feedback || !bandwidth) return false;
     const int steps = context_.world.steps_per_tick;
     const auto late_steps = std::lround(context_.world.command_delay * steps / b().period());
-    const double periods = static_cast<double>(1 + late_steps / steps);
-    const double late = 1e3 * periods * b().period();
-    context_.findings.add(
-        severity, spec.mark, "unstable-feedback", where,
-        fmt::format("internal force '{}' is unstable with feedback {:g}{}: the measured torque is "
-                    "that of a command {:.3g} ms before, so that a deviation is multiplied by {:g} "
-                    "every {:.3g} ms; below 1 it dies out",
-                    b().internal_instances[at(spec.instance)], *feedback, where, late, -*feedback,
-                    late));
+    const int periods = 1 + static_cast<int>(late_steps / steps);
+    const bool elastic = context_.world.series_elastic;
+    const double limit = elastic ? 1.0 : force_feedback_limit(*bandwidth, b().period(), periods);
+    const bool unstable = *feedback >= limit;
+    if (!unstable && (elastic || !now || *feedback <= 0.5 * limit)) return false;
+    const std::string& name = b().internal_instances[at(spec.instance)];
+    const std::string loop = fmt::format(
+        "the measured force is that of a command {:.3g} ms before, through a low-pass of {:g} Hz{}",
+        1e3 * periods * b().period(), *bandwidth,
+        elastic ? ", and of a series-elastic actuator" : "");
+    if (unstable) {
+      context_.findings.add(now ? Severity::error : Severity::warning, spec.mark,
+                            "unstable-feedback", where,
+                            fmt::format("internal force '{}' is unstable with feedback {:g}{}: {}; "
+                                        "below {:.3g} an error dies out",
+                                        name, *feedback, where, loop, limit));
+    } else {
+      context_.findings.add(
+          Severity::warning, spec.mark, "near-unstable-feedback", where,
+          fmt::format("internal force '{}' is fed back with {:g}, more than half of what is "
+                      "stable: {}; from {:.3g} on an error grows",
+                      name, *feedback, loop, limit));
+    }
     return true;
   }
 

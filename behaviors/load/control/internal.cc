@@ -62,6 +62,7 @@ std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem&
   spec.mark = reference->node->mark;
   spec.reference = context.compile_value(*reference->node, core::kForce, scope);
   spec.feedback = compile_limit(context, item, "feedback", core::kNone);
+  spec.bandwidth = compile_limit(context, item, "bandwidth", core::kRate);
   if (const DraftKey* convention = item.find("convention")) {
     const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
     if (choice && *choice == 1) spec.scale = 0.5;

@@ -27,7 +27,7 @@ machine:
     height: {{type: com_position, axes: [z], priority: 1, gains: {{kp: 270, kd: 10}}, reference: {}}}
     attitude: {{type: body_orientation, priority: 1, gains: {{kp: 200, kd: 15}}, reference: 0}}
     rest: {{type: joint_damping, priority: 2, gains: {{kd: 2}}}}
-  internal: {{tension: {{between: [right_foot, left_foot], reference: 20 N, feedback: {}}}}}
+  internal: {{tension: {{between: [right_foot, left_foot], reference: 20 N, feedback: {}, bandwidth: 0 Hz}}}}
   states: {}
 )",
                      reference, feedback, states);

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "tests/support/allocation_guard.h"
 #include "tests/support/dense_solve.h"
@@ -100,6 +102,44 @@ TEST_F(Controller, KeepsAsManyLevelsAsItWasBuiltFor) {
   EXPECT_EQ(controller_.result().tasks[1].rank, 4);
   EXPECT_EQ(controller_.result().tasks[2].rank, 1);
   EXPECT_NEAR(controller_.result().tasks[2].authority, 1.0 / 6.0, 1e-15);
+}
+
+// F + K (F - y), y the low-pass of the tension of the measured torques, which are those of the tick
+// before with an error that alone makes the tension wrong by d: stepped by hand as numbers. It
+// begins with y = F and ends at d/(1 + K); a gain far above 1 neither jumps nor alternates.
+TEST_F(Controller, MeasuredTensionIsFedBackThroughALowPass) {
+  constexpr double kWanted = 40.0, kGain = 8.0, kBandwidth = 20.0;
+  dual_.internal_count = 1;
+  tasks::InternalCommand& force = dual_.internals[0];
+  force = {.contact_a = kRightFoot, .contact_b = kLeftFoot, .reference = kWanted};
+  const std::array<double, 6> error = {5.0, -10.0, 15.0, -5.0, 10.0, 20.0};
+  ActiveControl control;
+  control.primary = dual_;
+  std::array<double, 6> measured{};
+  const auto tick = [&] {
+    controller_.compute(control, tick_++, measured.data(), tau_.data());
+    for (std::size_t j = 0; j < 6; ++j) measured[j] = tau_[j] + error[j];
+    return controller_.result().internal_measured[0];
+  };
+  tick();
+  const double d = tick() - kWanted;
+  ASSERT_GT(std::abs(d), 1.0);
+  control.primary.internal_count = 0;
+  tick();  // the pair is out of force: its low-pass begins anew
+  control.primary = dual_;
+  control.primary.internals[0].feedback = kGain;
+  control.primary.internals[0].bandwidth = kBandwidth;
+  const double a = std::exp(-2.0 * std::numbers::pi * kBandwidth * robot_.period_s());
+  double y = kWanted, last = 0.0;
+  for (int n = 0; n < 300; ++n) {
+    const double m = tick();
+    if (n > 0) {
+      EXPECT_NEAR(m, kWanted + kGain * (kWanted - y) + d, 1e-7) << n;
+    }
+    y = a * y + (1.0 - a) * m;
+    last = m;
+  }
+  EXPECT_NEAR(last - kWanted, d / (1.0 + kGain), 1e-6);
 }
 
 TEST_F(Controller, TensionNotNamedIsZeroAndNamedTensionIsReported) {

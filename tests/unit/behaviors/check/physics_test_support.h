@@ -12,8 +12,8 @@
 namespace footfall::tests {
 
 // What the physics checks report, one line each; what prevented loading otherwise.
-inline std::string physics(const std::string& text,
-                           const behaviors::LoadOptions& options = options_for_tests()) {
+inline std::string judged_in(const std::string& text, const behaviors::PhysicsWorld& world,
+                             const behaviors::LoadOptions& options = options_for_tests()) {
   core::Diagnostics diagnostics;
   const auto behavior = behaviors::load_behavior_text(text, "b.yaml", options, diagnostics);
   if (behavior == nullptr) return diagnostics.to_string();
@@ -21,8 +21,12 @@ inline std::string physics(const std::string& text,
   for (int file = 0; file < diagnostics.file_count(); ++file) {
     findings.add_file(diagnostics.file(file));
   }
-  behaviors::check_physics(*behavior, findings);
+  behaviors::check_physics(*behavior, findings, world);
   return findings.to_string();
+}
+inline std::string physics(const std::string& text,
+                           const behaviors::LoadOptions& options = options_for_tests()) {
+  return judged_in(text, {}, options);
 }
 
 // `b.yaml:LINE:COLUMN: ` of the first place of a piece of text.
