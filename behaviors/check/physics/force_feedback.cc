@@ -68,7 +68,8 @@ class FeedbackCheck {
     const int periods = 1 + static_cast<int>(late_steps / steps);
     const bool elastic = context_.world.series_elastic;
     const double limit = elastic ? 1.0 : force_feedback_limit(*bandwidth, b().period(), periods);
-    const bool unstable = *feedback >= limit;
+    const bool negative = *feedback <= -1.0;  // z = 1 is a root at -1, whatever low-pass and delay
+    const bool unstable = negative || *feedback >= limit;
     if (!unstable && (elastic || !now || *feedback <= 0.5 * limit)) return false;
     const std::string& name = b().internal_instances[at(spec.instance)];
     const std::string loop = fmt::format(
@@ -79,8 +80,9 @@ class FeedbackCheck {
       context_.findings.add(now ? Severity::error : Severity::warning, spec.mark,
                             "unstable-feedback", where,
                             fmt::format("internal force '{}' is unstable with feedback {:g}{}: {}; "
-                                        "below {:.3g} an error dies out",
-                                        name, *feedback, where, loop, limit));
+                                        "{} {:.3g} an error dies out",
+                                        name, *feedback, where, loop, negative ? "above" : "below",
+                                        negative ? -1.0 : limit));
     } else {
       context_.findings.add(
           Severity::warning, spec.mark, "near-unstable-feedback", where,

@@ -91,6 +91,14 @@ TEST(PhysicsFeedback, TheEndsOfALiveRangeAreWarnedAbout) {
             "");
 }
 
+TEST(PhysicsFeedback, ARangeThatReachesMinusOneIsWarnedAbout) {
+  EXPECT_THAT(
+      physics(fed_back("$k", "parameters: {k: {value: 0.5, range: [-2, 1], live: true}}\n")),
+      HasSubstr("is unstable with feedback -2 at the end of the range of 'k'"));
+  EXPECT_FALSE(dies_out(-1.01, 20.0, 1));
+  EXPECT_TRUE(dies_out(-0.9, 20.0, 1));
+}
+
 // Commands in a line of physics steps, as the simulator keeps them: how old is the one that acted
 // in the last step before a tick?
 TEST(PhysicsFeedback, TheAgeOfTheMeasuredTorqueIsThatOfItsCommand) {
