@@ -71,6 +71,9 @@ class ControlModel {
   const std::array<double, 3>& point_position(int index) const noexcept {
     return points_[static_cast<std::size_t>(index)].position;
   }
+  // Unit normal of the ground at a contact, out of the ground, world axes.
+  const std::array<double, 3>& contact_normal(int) const noexcept { return kUp; }
+  static constexpr std::array<double, 3> kUp = {0.0, 0.0, 1.0};
   // Angular velocity of the link that a point is on, rad/s, world axes.
   std::array<double, 3> point_angular_velocity(int index) const noexcept;
   // Orientation of the same points: of the site (or link) that the robot file names. Computed when

@@ -22,15 +22,20 @@ struct TaskCommand {
   bool fresh = false;  // in force since this tick: all its integrals start at 0
 };
 
-// Tension between two contacts. Positive pushes the contacts apart.
+// Tension between two contacts, positive: pushes them apart; or the vertical warp of four,
+// positive: loads the first and third, unloads the second and fourth.
 struct InternalCommand {
-  int instance = 0;   // index into Behavior::internal_instances
-  int contact_a = 0;  // contact indices of the robot
-  int contact_b = 0;
-  double reference = 0.0;  // N, force at each contact (`mean` convention)
-  double feedback = 0.0;   // K_F on the measured force
-  double bandwidth = 0.0;  // Hz, of the measured force's low-pass; 0: none
-  double scale = 1.0;      // mean force over what the behavior writes: 0.5 for `sum`
+  int instance = 0;               // index into Behavior::internal_instances
+  int contact_count = 2;          // 2 or 4
+  std::array<int, 4> contacts{};  // contact indices of the robot
+  double reference = 0.0;         // N, force at each contact (`mean` convention)
+  double statics = 0.0;           // not 0: the reference is this part of that of statics.h
+  double feedback = 0.0;          // K_F on the measured force
+  double integral = 0.0;          // K_I, 1/s, of the same error
+  double integral_limit = 0.0;    // N, of what the integral adds; 0: none
+  double bandwidth = 0.0;         // Hz, of the measured force's low-pass; 0: none
+  double ramp = 0.0;              // s, in which the reference grows from 0 N
+  double scale = 1.0;             // mean force over what the behavior writes: 0.5 for `sum`
 };
 
 // One complete control law: contacts that hold, tasks by priority, internal forces.

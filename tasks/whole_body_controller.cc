@@ -2,9 +2,7 @@
 #include "tasks/whole_body_controller.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/index.h"
 
@@ -12,9 +10,8 @@ namespace footfall::tasks {
 namespace {
 
 WboscSizes solver_sizes(const model::ControlModel& model, const ControllerSizes& sizes) {
-  const int pairs = sizes.contacts * (sizes.contacts - 1) / 2;
   return {model.nv(),      model.joint_count(), 3 * sizes.contacts,
-          sizes.task_rows, sizes.levels,        pairs};
+          sizes.task_rows, sizes.levels,        internal_rows(sizes.contacts)};
 }
 
 // Index of a robot contact within the set, -1 if it does not hold.
@@ -23,19 +20,6 @@ int place_in(const ControlSet& set, int contact) noexcept {
     if (set.contacts[at(i)] == contact) return i;
   }
   return -1;
-}
-
-std::size_t pair_of(int a, int b) noexcept {
-  return at(std::min(a, b) * core::kMaxContacts + std::max(a, b));
-}
-
-bool named(const ControlSet& set, int a, int b) noexcept {
-  for (int i = 0; i < set.internal_count; ++i) {
-    const InternalCommand& c = set.internals[at(i)];
-    if ((c.contact_a == a && c.contact_b == b) || (c.contact_a == b && c.contact_b == a))
-      return true;
-  }
-  return false;
 }
 
 }  // namespace
@@ -49,7 +33,8 @@ WholeBodyController::WholeBodyController(const model::ControlModel& model,
       sizes_(sizes),
       memory_(std::max(1, sizes.task_instances), model.joint_count()),
       primary_(solver_sizes(model, sizes)),
-      other_(solver_sizes(model, sizes)) {
+      other_(solver_sizes(model, sizes)),
+      internal_(model, period, internal_rows(sizes.contacts)) {
   for (int j = 0; j < model.joint_count(); ++j) actuated_.push_back(6 + j);
 }
 
@@ -65,8 +50,8 @@ void WholeBodyController::compute(const ActiveControl& control, std::int64_t tic
   }
   solve_law(primary_, control.primary, tick, tau_measured, result_.axes.data());
 
-  if (both) keep_filtered(other_, control.other, tick);
-  keep_filtered(primary_, control.primary, tick);
+  if (both) internal_.keep(other_, control.other, tick);
+  internal_.keep(primary_, control.primary, tick);
   const double w = both && !frozen ? control.other_weight : 0.0;
   const WboscSolution& a = primary_.solution();
   const WboscSolution& b = other_.solution();
@@ -88,7 +73,8 @@ void WholeBodyController::solve_law(Wbosc& solver, const ControlSet& set, std::i
   problem.tau_measured = tau_measured;
   assemble_contacts(problem, set);
   assemble_tasks(problem, set, tick, axes);
-  assemble_internal(problem, set, tick);
+  problem.hold_integral = result_.limited;
+  internal_.assemble(problem, set, tick);
   solver.solve();
 }
 
@@ -127,71 +113,6 @@ void WholeBodyController::assemble_tasks(WboscProblem& problem, const ControlSet
   problem.levels = levels;
 }
 
-// Tension between contacts a and b, mean convention, as a row on f (ground on robot): pushing apart
-// means the robot pushes a away from b, so f_a points back: F = -½ x̂ᵀ (f_a - f_b).
-// Source: [Kim16] eqs. (7)-(10) with E10 (each foot's force, not the sum).
-void WholeBodyController::tension_row(WboscProblem& problem, const ControlSet& set, int row, int a,
-                                      int b) const noexcept {
-  const int columns = problem.contact_rows;
-  double* w = problem.W_int.data() + row * columns;
-  std::fill_n(w, columns, 0.0);
-  const std::array<double, 3>& pa = model_.point(a).position;
-  const std::array<double, 3>& pb = model_.point(b).position;
-  const double distance = std::hypot(pa[0] - pb[0], pa[1] - pb[1], pa[2] - pb[2]);
-  if (distance < 1e-6) return;  // the same place has no direction; the row stays without rank
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double x = (pa[k] - pb[k]) / distance;
-    w[3 * at(place_in(set, a)) + k] = -0.5 * x;
-    w[3 * at(place_in(set, b)) + k] = 0.5 * x;
-  }
-}
-
-// The low-pass of a pair that was not held in the last tick begins at its reference: feedback comes
-// in with the low-pass's own time, whatever the torques before were.
-void WholeBodyController::assemble_internal(WboscProblem& problem, const ControlSet& set,
-                                            std::int64_t tick) const noexcept {
-  int row = 0;
-  for (int i = 0; i < set.internal_count; ++i) {
-    const InternalCommand& c = set.internals[at(i)];
-    if (place_in(set, c.contact_a) < 0 || place_in(set, c.contact_b) < 0) continue;
-    tension_row(problem, set, row, c.contact_a, c.contact_b);
-    problem.F_int[at(row)] = c.reference;
-    problem.K_F[at(row)] = c.feedback;
-    const Tension& last = tension_[pair_of(c.contact_a, c.contact_b)];
-    constexpr double kTurn = 2.0 * std::numbers::pi;
-    problem.measured_share[at(row)] =
-        c.bandwidth > 0.0 ? -std::expm1(-kTurn * c.bandwidth * period_) : 1.0;
-    problem.measured_before[at(row)] = last.tick == tick - 1 ? last.filtered : c.reference;
-    ++row;
-  }
-  problem.named_internal_rows = row;
-  for (int i = 0; i < set.contact_count; ++i) {  // those not named get 0 N
-    for (int j = i + 1; j < set.contact_count; ++j) {
-      const int a = set.contacts[at(i)];
-      const int b = set.contacts[at(j)];
-      if (named(set, a, b)) continue;
-      tension_row(problem, set, row, a, b);
-      problem.F_int[at(row)] = 0.0;
-      problem.K_F[at(row)] = 0.0;
-      problem.measured_share[at(row)] = 1.0;
-      problem.measured_before[at(row)] = 0.0;
-      ++row;
-    }
-  }
-  problem.internal_rows = row;
-}
-
-void WholeBodyController::keep_filtered(const Wbosc& solver, const ControlSet& set,
-                                        std::int64_t tick) noexcept {
-  int row = 0;
-  for (int i = 0; i < set.internal_count; ++i) {
-    const InternalCommand& c = set.internals[at(i)];
-    if (place_in(set, c.contact_a) < 0 || place_in(set, c.contact_b) < 0) continue;
-    tension_[pair_of(c.contact_a, c.contact_b)] = {solver.solution().internal_filtered[at(row++)],
-                                                   tick};
-  }
-}
-
 void WholeBodyController::sample_frozen_force(const ActiveControl& control) noexcept {
   for (int i = 0; i < control.moving_contact_count; ++i) {
     const int contact = control.moving_contacts[at(i)];
@@ -221,16 +142,21 @@ void WholeBodyController::add_frozen_force(const ActiveControl& control) noexcep
 void WholeBodyController::report(const ActiveControl& control) noexcept {
   const WboscSolution& a = primary_.solution();
   for (auto& f : result_.force) f = {};
+  for (auto& f : result_.force_measured) f = {};
   const bool blended = control.has_other && control.form == TransitionForm::continuous;
   const double w = blended ? control.other_weight : 0.0;
   for (int i = 0; i < control.primary.contact_count; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      result_.force[at(control.primary.contacts[at(i)])][k] += (1.0 - w) * a.f[3 * at(i) + k];
+      const std::size_t contact = at(control.primary.contacts[at(i)]);
+      result_.force[contact][k] += (1.0 - w) * a.f[3 * at(i) + k];
+      result_.force_measured[contact][k] += (1.0 - w) * a.f_measured[3 * at(i) + k];
     }
   }
   for (int i = 0; blended && i < control.other.contact_count; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      result_.force[at(control.other.contacts[at(i)])][k] += w * other_.solution().f[3 * at(i) + k];
+      const std::size_t contact = at(control.other.contacts[at(i)]);
+      result_.force[contact][k] += w * other_.solution().f[3 * at(i) + k];
+      result_.force_measured[contact][k] += w * other_.solution().f_measured[3 * at(i) + k];
     }
   }
   // The frozen form's moving feet, whose force the primary law takes as given.
@@ -260,15 +186,14 @@ void WholeBodyController::report_tasks(const ActiveControl& control) noexcept {
       result_.achieved[at(task.first_axis + i)] = a.achieved[at(row)];
     }
   }
-  int pair = 0;
+  int force = 0;
   for (int i = 0; i < control.primary.internal_count; ++i) {
-    const InternalCommand& c = control.primary.internals[at(i)];
-    const bool holds =
-        place_in(control.primary, c.contact_a) >= 0 && place_in(control.primary, c.contact_b) >= 0;
+    const bool here = holds(control.primary, control.primary.internals[at(i)]);
     constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
-    result_.internal[at(i)] = holds ? a.internal[at(pair)] : kNoForce;
-    result_.internal_measured[at(i)] = holds ? a.internal_measured[at(pair)] : kNoForce;
-    if (holds) ++pair;
+    result_.internal_reference[at(i)] = here ? primary_.problem().F_int[at(force)] : kNoForce;
+    result_.internal[at(i)] = here ? a.internal[at(force)] : kNoForce;
+    result_.internal_measured[at(i)] = here ? a.internal_measured[at(force)] : kNoForce;
+    if (here) ++force;
   }
 }
 

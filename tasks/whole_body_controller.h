@@ -16,6 +16,7 @@
 
 #include "model/control_model.h"
 #include "tasks/active_set.h"
+#include "tasks/internal_forces.h"
 #include "tasks/solver/wbosc.h"
 #include "tasks/task_law.h"
 
@@ -38,13 +39,16 @@ struct TaskReport {
 // Valid until the next compute().
 struct ControllerResult {
   std::array<std::array<double, 3>, core::kMaxContacts>
-      force{};                                        // N, ground on robot, per robot contact
+      force{};  // N, ground on robot, per robot contact
+  // Likewise under the measured joint torques: each law's, with its weight.
+  std::array<std::array<double, 3>, core::kMaxContacts> force_measured{};
   std::array<AxisEvaluation, core::kMaxAxes> axes{};  // as primary.axes
   std::array<double, core::kMaxAxes> achieved{};      // as primary.axes; primary law alone
   std::array<TaskReport, core::kMaxTasks> tasks{};    // as primary.tasks
   std::array<double, core::kMaxInternal>
       internal{};  // N, mean convention, as primary.internals, predicted; NaN: no such contacts
-  std::array<double, core::kMaxInternal> internal_measured{};  // N, from measured joint torque
+  std::array<double, core::kMaxInternal> internal_reference{};  // N, in force in this tick
+  std::array<double, core::kMaxInternal> internal_measured{};   // N, from measured joint torque
   bool limited = false;  // a law asks for more than a joint's limit
 };
 
@@ -64,7 +68,7 @@ class WholeBodyController {
   void take_over(const WholeBodyController& old, const std::vector<int>& instances) noexcept {
     memory_.take_over(old.memory_, instances);
     frozen_force_ = old.frozen_force_;
-    tension_ = old.tension_;
+    internal_.take_over(old.internal_);
   }
 
   const ControllerResult& result() const noexcept { return result_; }
@@ -79,11 +83,6 @@ class WholeBodyController {
   void assemble_contacts(WboscProblem& problem, const ControlSet& set) const noexcept;
   void assemble_tasks(WboscProblem& problem, const ControlSet& set, std::int64_t tick,
                       AxisEvaluation* axes) noexcept;
-  void assemble_internal(WboscProblem& problem, const ControlSet& set,
-                         std::int64_t tick) const noexcept;
-  void keep_filtered(const Wbosc& solver, const ControlSet& set, std::int64_t tick) noexcept;
-  void tension_row(WboscProblem& problem, const ControlSet& set, int row, int a,
-                   int b) const noexcept;
   void sample_frozen_force(const ActiveControl& control) noexcept;
   void add_frozen_force(const ActiveControl& control) noexcept;
   void report(const ActiveControl& control) noexcept;
@@ -99,13 +98,7 @@ class WholeBodyController {
   Wbosc other_;
   std::array<AxisEvaluation, core::kMaxAxes> other_axes_{};
   std::array<std::array<double, 3>, core::kMaxContacts> frozen_force_{};
-  // Of each pair of contacts, the first one the smaller: its measured tension after the low-pass in
-  // the last tick that had it.
-  struct Tension {
-    double filtered = 0.0;  // N, mean convention
-    std::int64_t tick = -2;
-  };
-  std::array<Tension, static_cast<std::size_t>(core::kMaxContacts* core::kMaxContacts)> tension_{};
+  InternalForces internal_;
   ControllerResult result_;
 };
 

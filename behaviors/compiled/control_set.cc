@@ -32,8 +32,12 @@ void fill_control_set(const Behavior& behavior, const ControlSpec& spec, tasks::
   }
   for (int k = spec.internals.first; k < spec.internals.end(); ++k) {
     const InternalSpec& internal = behavior.internals[at(k)];
-    set.internals[at(set.internal_count++)] = {internal.instance, internal.contact_a,
-                                               internal.contact_b};
+    tasks::InternalCommand& command = set.internals[at(set.internal_count++)];
+    command.instance = internal.instance;
+    command.contact_count = internal.contact_count;
+    command.contacts = internal.contacts;
+    command.statics = values.of(internal.statics).value_or(0.0);
+    command.scale = internal.scale;
   }
 }
 

@@ -71,13 +71,21 @@ struct TaskSpec {
 inline constexpr double kInternalBandwidth = 20.0;  // Hz
 
 struct InternalSpec {
-  int instance = 0;  // into Behavior::internal_instances
-  int contact_a = 0, contact_b = 0;
-  int reference = -1;  // expression, N at each contact
-  int feedback = -1;   // expression, -1: 0
-  int bandwidth = -1;  // expression, Hz, -1: kInternalBandwidth
-  double scale = 1.0;  // of the reference: 0.5 for the `sum` convention
-  core::Mark mark;     // of its reference
+  int instance = 0;               // into Behavior::internal_instances
+  int contact_count = 2;          // 2: a tension; 4: the vertical warp
+  std::array<int, 4> contacts{};  // of the robot
+  // Kind `value`: expression `value`, N as the behavior writes it; trajectory: its `to`.
+  ReferenceSpec reference;
+  int value = -1;
+  int end_velocity = -1;    // trajectories: expression, N/s
+  int statics = -1;         // expression, part of the force by statics; -1: none
+  int feedback = -1;        // expression, -1: 0
+  int integral = -1;        // expression, 1/s, -1: 0
+  int integral_limit = -1;  // expression, N as the behavior writes it, -1: none
+  int bandwidth = -1;       // expression, Hz, -1: kInternalBandwidth
+  int ramp = -1;            // expression of a time, -1: 0 s
+  double scale = 1.0;       // of what is written in N: 0.5 for `sum`, 0.25 for that of a warp
+  core::Mark mark;          // of its reference
 };
 
 // A torque-continuous change of the contact set.

@@ -235,6 +235,7 @@ TakeOverMap map_take_over(const Behavior& from, const Behavior& to) {
   map_transitions(from, to, map);
   map_invokes(from, to, map);
   map_instances(from, to, map);
+  map.internals = map_names(from.internal_instances, to.internal_instances);
   map_histories(from, to, map);
   map.same_controls = weigh_alike(from, to, map);
   return map;

@@ -21,6 +21,7 @@ struct TakeOverMap {
   std::vector<std::uint8_t> same_after;  // by transition: its deadline is unchanged
   std::vector<int> events;               // same name
   std::vector<int> instances;            // tasks of the same name, type and point
+  std::vector<int> internals;            // internal forces of the same name
   std::vector<int> planners;             // same name
   std::vector<int> invokes;              // same position among those of its state, same planner
   std::vector<int> signals;              // same name and dimension

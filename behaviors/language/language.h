@@ -41,7 +41,8 @@ extern const std::span<const core::WordSpec> kTransitionForms;
 
 // tasks.cc
 extern const core::KeyTable kTaskKeys;  // selector: type
-extern const core::KeyTable kInternalKeys;
+extern const core::KeyTable kInternalKeys, kForceReferenceKeys;
+extern const std::span<const core::WordSpec> kForceReferences, kForceTrajectories;
 extern const core::KeyTable kTrajectoryKeys;  // selector: trajectory
 extern const core::KeyTable kWaypointKeys;
 extern const std::span<const core::WordSpec> kDirections;

@@ -93,19 +93,57 @@ constexpr KeySpec kTaskRows[] = {
 
 constexpr WordSpec kConventionRows[] = {
     {"mean", "the reference is the force at each contact"},
-    {"sum", "the reference is twice that, as in the paper"},
+    {"sum", "the reference is the sum over the contacts, as in the paper"},
 };
 
 constexpr WordSpec kBetweenRows[] = {
     {"all", "every pair of active contacts without an internal force of its own"},
 };
 
+constexpr WordSpec kForceReferenceWords[] = {
+    {"statics", "the force at which the contacts' forces at rest are nearest to their normals"},
+};
+
+constexpr WordSpec kForceTrajectoryRows[] = {
+    {"hold", "stays where it is"},
+    {"polynomial", "of order 3 or 5"},
+    {"cosine", "half a cosine wave, at rest at both ends"},
+    {"minimum_jerk", "the smoothest change"},
+};
+
+constexpr KeySpec kForceReferenceRows[] = {
+    key("statics", computed(quantity(kNone)),
+        "this part of the force by statics, and nothing else"),
+    key("trajectory", choice(kForceTrajectoryRows), "alternatively: its shape"),
+    key("order", integer(3, 5), "3 or 5, of a polynomial"),
+    key("to", computed(quantity(kForce, "a force; `entry` is the one at the start")), "end value"),
+    key("over", computed(quantity(kTime)), "duration, read at entry"),
+    key("end_velocity", computed(any_quantity("N/s")), "rate at the end, kept afterwards")
+        .otherwise("0"),
+};
+
 constexpr KeySpec kInternalRows[] = {
-    key("between", pair(name_of("a contact")), choice(kBetweenRows), "the two contacts, or all")
+    key("between", list(name_of("a contact")), choice(kBetweenRows),
+        "two contacts: the tension between them; four, around the robot: their vertical warp, "
+        "which "
+        "loads the first and third and unloads the others; or all pairs")
         .required(),
-    key("reference", computed(quantity(kForce)), "positive pushes the contacts apart").required(),
+    key("reference", computed(quantity(kForce)), choice(kForceReferenceWords),
+        map_of(kForceReferenceKeys),
+        "positive pushes the contacts apart (loads the first): a value, the force by statics, or a "
+        "trajectory")
+        .required(),
     key("feedback", computed(quantity(kNone)), "gain on the error of the measured force")
         .otherwise("0"),
+    key("integral", computed(quantity(kRate, "a rate in 1/s")),
+        "gain on the integral of that error, which does not grow while a joint asks for more than "
+        "its torque")
+        .otherwise("0 1/s"),
+    key("integral_limit", computed(quantity(kForce)), "limit of what the integral adds")
+        .otherwise("none"),
+    key("ramp", computed(quantity(kTime)),
+        "in which the reference grows from 0 N once its contacts hold")
+        .otherwise("0 s"),
     key("bandwidth", computed(quantity(kRate, "a frequency in Hz")),
         "of the first-order low-pass of the measured force that is fed back; 0 Hz: none")
         .otherwise("20 Hz"),
@@ -185,8 +223,13 @@ constinit const core::KeyTable kTaskKeys = {
     .variants = kTaskTypeRows};
 constinit const core::KeyTable kInternalKeys = {
     .id = "internal",
-    .doc = "A force between contacts that causes no motion. Pairs that are not named get 0 N.",
+    .doc = "A force between contacts that causes no motion. Those that are not named get 0 N.",
     .keys = kInternalRows,
+    .part = true};
+constinit const core::KeyTable kForceReferenceKeys = {
+    .id = "force_reference",
+    .doc = "The force by statics, or a change from the value at entry.",
+    .keys = kForceReferenceRows,
     .part = true};
 constinit const core::KeyTable kWaypointKeys = {
     .id = "waypoint", .doc = "A point to pass, and its time.", .keys = kWaypointRows};
@@ -198,6 +241,8 @@ constinit const core::KeyTable kTrajectoryKeys = {
     .selector = "trajectory",
     .variants = kTrajectoryRows};
 constinit const std::span<const core::WordSpec> kFrames = kFrameRows;
+constinit const std::span<const core::WordSpec> kForceReferences = kForceReferenceWords;
+constinit const std::span<const core::WordSpec> kForceTrajectories = kForceTrajectoryRows;
 constinit const std::span<const core::WordSpec> kConventions = kConventionRows;
 constinit const std::span<const core::WordSpec> kDirections = kDirectionRows;
 constinit const std::span<const core::WordSpec> kTrajectories = kTrajectoryRows;

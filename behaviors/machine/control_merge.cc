@@ -82,6 +82,13 @@ bool ControlMerge::changed() const noexcept {
     const TaskState& task = primary_->tasks[at(k)];
     if (task.owner_serial != statechart_.entry_serial(task.spec->reference.owner)) return true;
   }
+  for (int k = 0; k < spec.internals.count; ++k) {
+    const ReferenceSpec& reference = behavior_.internals[at(spec.internals.first + k)].reference;
+    if (reference.kind == ReferenceSpec::Kind::trajectory &&
+        primary_->forces[at(k)].owner_serial != statechart_.entry_serial(reference.owner)) {
+      return true;
+    }
+  }
   return spec.transition >= 0 && !transition_goes_on(spec);
 }
 
@@ -131,15 +138,7 @@ void ControlMerge::fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& s
   for (int k = 0; k < spec.tasks.count; ++k) {
     fill_task(bank, set, behavior_.tasks[at(spec.tasks.first + k)], k);
   }
-  set.internal_count = spec.internals.count;
-  for (int k = 0; k < spec.internals.count; ++k) {
-    const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
-    set.internals[at(k)] = {.instance = internal.instance,
-                            .contact_a = internal.contact_a,
-                            .contact_b = internal.contact_b,
-                            .bandwidth = kInternalBandwidth,
-                            .scale = internal.scale};
-  }
+  fill_forces(bank, set, spec);
 }
 
 void ControlMerge::fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec,
@@ -219,16 +218,7 @@ void ControlMerge::fill_axis(Bank& bank, const tasks::ControlSet& set,
 
 void ControlMerge::advance(Bank& bank, tasks::ControlSet& set) noexcept {
   for (int k = 0; k < bank.task_count; ++k) advance_task(bank, set, k);
-  const ControlSpec& spec = *bank.spec;
-  for (int k = 0; k < spec.internals.count; ++k) {
-    const InternalSpec& internal = behavior_.internals[at(spec.internals.first + k)];
-    tasks::InternalCommand& command = set.internals[at(k)];
-    command.reference =
-        internal.scale *
-        value_or(internal.reference, command.reference / internal.scale, bank, nullptr);
-    command.feedback = value_or(internal.feedback, command.feedback, bank, nullptr);
-    command.bandwidth = value_or(internal.bandwidth, command.bandwidth, bank, nullptr);
-  }
+  advance_forces(bank, set);
 }
 
 void ControlMerge::advance_task(Bank& bank, tasks::ControlSet& set, int index) noexcept {

@@ -51,6 +51,15 @@ class ControlMerge {
     double ramp = 0.0;                   // ellipse: s
     std::int64_t last_tick = 0;          // ellipse: of the angle
   };
+  // An internal force's reference, N as the behavior writes it.
+  struct ForceState {
+    int source = -1;  // ReferenceSpec::source
+    std::uint32_t owner_serial = 0;
+    Segment segment;
+    std::int64_t start_tick = 0;
+    double entry = 0.0;  // at the start of the reference
+    double value = 0.0;  // in force
+  };
   // One set of active tasks, with the same numbering as its tasks::ControlSet.
   struct Bank {
     const ControlSpec* spec = nullptr;
@@ -60,7 +69,8 @@ class ControlMerge {
     std::array<TaskState, core::kMaxTasks> tasks{};
     std::array<AxisState, core::kMaxAxes> axes{};
     std::array<double, core::kMaxAxes> entry{};  // start values of the references
-    std::vector<Knot> knots;                     // sized at load
+    std::array<ForceState, core::kMaxInternal> forces{};
+    std::vector<Knot> knots;  // sized at load
     int knot_count = 0;
   };
   // A task, or one of its axes (slot), before this tick.
@@ -84,6 +94,13 @@ class ControlMerge {
   void update_transition(const ControlSpec& spec) noexcept;
   void begin_transition(const TransitionSpec& transition) noexcept;
   void fill(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec) noexcept;
+  // References of internal forces (force_reference.cc).
+  void fill_forces(Bank& bank, tasks::ControlSet& set, const ControlSpec& spec) noexcept;
+  void start_force(Bank& bank, ForceState& state, const InternalSpec& spec) noexcept;
+  void advance_forces(Bank& bank, tasks::ControlSet& set) noexcept;
+  const ForceState* find_kept_force(const tasks::InternalCommand& command) const noexcept;
+  bool take_forces(Bank& bank, tasks::ControlSet& set, const ControlMerge& from, const Bank& old,
+                   const ControlSpec& spec, const TakeOverMap& map) noexcept;
   void fill_task(Bank& bank, tasks::ControlSet& set, const TaskSpec& spec, int index) noexcept;
   void fill_axis(Bank& bank, const tasks::ControlSet& set, const tasks::TaskCommand& command,
                  const TaskSpec& spec, int k, const Kept& kept) noexcept;

@@ -68,7 +68,8 @@ void ControlMerge::take_over(const ControlMerge& old, const TakeOverMap& map,
 bool ControlMerge::take_bank(Bank& bank, tasks::ControlSet& set, const ControlMerge& from,
                              const Bank& old, const ControlSpec& spec,
                              const TakeOverMap& map) noexcept {
-  bool whole = spec.tasks.count == old.task_count && spec.internals.count == set.internal_count;
+  bool whole = take_forces(bank, set, from, old, spec, map);
+  whole &= spec.tasks.count == old.task_count;
   bank.frozen = old.frozen;
   bank.reported = false;
   bank.task_count = old.task_count;

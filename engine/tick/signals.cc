@@ -189,7 +189,7 @@ void SignalWriter::write_internals(const tasks::ControlSet& set,
       pairs += 1.0;
       sum += result.internal_measured[at(j)];
     }
-    signals_[out.reference] = c.reference / c.scale;
+    signals_[out.reference] = result.internal_reference[at(i)] / c.scale;
     signals_[out.measured] = sum / pairs / c.scale;
     internal_in_force_[at(c.instance)] = 1;
   }

@@ -1,6 +1,7 @@
 // Contact and internal forces of the reduced WBOSC, and effective inertia; see wbosc.h.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/index.h"
 #include "tasks/solver/wbosc.h"
@@ -48,6 +49,8 @@ void Wbosc::add_internal_forces() noexcept {
   const int r = solution_.actuation_rank;
   const int nulls = na - r;
   const int rows = problem_.internal_rows;
+  solution_.internal_rank = solution_.named_internal_rank = 0;
+  if (problem_.tau_measured) contact_forces(problem_.tau_measured, solution_.f_measured.data());
   if (rows == 0) return;
   double* f0 = forces_.data();
   double* f1 = f0 + nc;
@@ -67,25 +70,37 @@ void Wbosc::add_internal_forces() noexcept {
       internal_norm2_[extent(i)] += value * value;
     }
   }
-  if (problem_.tau_measured) contact_forces(problem_.tau_measured, f1);
   for (int i = 0; i < rows; ++i) {
     double now = 0.0;
     double measured = 0.0;
     for (int c = 0; c < nc; ++c) {
       now += problem_.W_int[extent(i * nc + c)] * f0[c];
-      measured += problem_.W_int[extent(i * nc + c)] * f1[c];
+      measured += problem_.W_int[extent(i * nc + c)] * solution_.f_measured[extent(c)];
     }
-    double wanted = problem_.F_int[extent(i)];
-    if (!problem_.tau_measured) measured = now;
-    const double before = problem_.measured_before[extent(i)];
-    const double filtered = before + problem_.measured_share[extent(i)] * (measured - before);
-    if (problem_.tau_measured) wanted += problem_.K_F[extent(i)] * (wanted - filtered);
-    solution_.internal_measured[extent(i)] = measured;
-    solution_.internal_filtered[extent(i)] = filtered;
-    rhs_[extent(i)] = wanted - now;
+    rhs_[extent(i)] = problem_.F_int[extent(i)] - now;
+    feed_back(i, problem_.tau_measured ? measured : now);
     internal_order_[extent(i)] = i;
   }
   if (nulls > 0) add_null_torque(nulls, rows);
+}
+
+// What is measured of a row, and what feedback adds to its command.
+void Wbosc::feed_back(int row, double measured) noexcept {
+  const std::size_t i = extent(row);
+  const double before = problem_.measured_before[i];
+  const double filtered = before + problem_.measured_share[i] * (measured - before);
+  const double error = problem_.F_int[i] - filtered;
+  solution_.internal_measured[i] = measured;
+  solution_.internal_filtered[i] = filtered;
+  solution_.internal_integral[i] = problem_.integral_before[i];
+  if (!problem_.tau_measured) return;
+  const double old = problem_.integral_before[i];
+  double integral = old + problem_.integral_gain[i] * error;
+  if (problem_.hold_integral && std::abs(integral) > std::abs(old)) integral = old;
+  const double limit = problem_.integral_limit[i];
+  if (limit > 0.0) integral = within_limit(integral, limit);
+  solution_.internal_integral[i] = integral;
+  rhs_[i] += problem_.K_F[i] * error + integral;
 }
 
 // Solves Gᵀ's two-level cascade for α and adds N α to the torque.
@@ -105,6 +120,8 @@ void Wbosc::add_null_torque(int nulls, int rows) noexcept {
     done += solve_cascade_level(g, range, rule, internal_order_.data(), internal_norm2_.data(),
                                 rhs_.data(), internal_weight_.data(), alpha_.data(), &keep, nullptr,
                                 scratch);
+    solution_.internal_rank = done;
+    if (level == 1) solution_.named_internal_rank = done;
   }
   rotate_back(keep, nulls, alpha_.data());
   for (int j = 0; j < na; ++j) {

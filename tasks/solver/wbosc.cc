@@ -36,17 +36,18 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   problem_.level_end.assign(extent(sizes.levels), 0);
   problem_.external.assign(extent(n), 0.0);
   problem_.W_int.assign(extent(sizes.internal_rows * sizes.contact_rows), 0.0);
-  problem_.F_int.assign(extent(sizes.internal_rows), 0.0);
-  problem_.K_F.assign(extent(sizes.internal_rows), 0.0);
+  for (std::vector<double>* rows :
+       {&problem_.F_int, &problem_.K_F, &problem_.measured_before, &problem_.integral_gain,
+        &problem_.integral_before, &problem_.integral_limit, &solution_.internal,
+        &solution_.internal_measured, &solution_.internal_filtered, &solution_.internal_integral}) {
+    rows->assign(extent(sizes.internal_rows), 0.0);
+  }
   problem_.measured_share.assign(extent(sizes.internal_rows), 1.0);
-  problem_.measured_before.assign(extent(sizes.internal_rows), 0.0);
   solution_.asked.assign(extent(sizes.na), 0.0);
   solution_.tau.assign(extent(sizes.na), 0.0);
   solution_.f.assign(extent(sizes.contact_rows), 0.0);
   solution_.achieved.assign(extent(sizes.task_rows), 0.0);
-  solution_.internal.assign(extent(sizes.internal_rows), 0.0);
-  solution_.internal_measured.assign(extent(sizes.internal_rows), 0.0);
-  solution_.internal_filtered.assign(extent(sizes.internal_rows), 0.0);
+  solution_.f_measured.assign(extent(sizes.contact_rows), 0.0);
   solution_.level_rows.assign(extent(sizes.levels), 0);
   solution_.level_rank.assign(extent(sizes.levels), 0);
   solution_.level_condition.assign(extent(sizes.levels), 1.0);
@@ -319,6 +320,9 @@ void Wbosc::finish() noexcept {
   }
   if (!solution_.finite) std::fill_n(tau, na, 0.0);  // as it is sent: forces stay numbers
   contact_forces(tau, solution_.f.data());
+  if (!problem_.tau_measured) {
+    std::copy_n(solution_.f.data(), problem_.contact_rows, solution_.f_measured.data());
+  }
   for (int i = 0; i < problem_.internal_rows; ++i) {
     double value = 0.0;
     for (int c = 0; c < problem_.contact_rows; ++c) {

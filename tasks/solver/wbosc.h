@@ -1,7 +1,8 @@
 // Whole-body operational space control as pure algebra: from the factored mass matrix, contact and
 // task Jacobians and desired task accelerations to joint torques. The last computation of a tick.
 //
-//   τ = Σ_k J*ₖᵀ Λ*ₖ (uₖ - J̇ₖq̇ + …) + L*ᵀ J*_ilᵀ (F_ref - F_task + K_F (F_ref - F_meas))
+//   τ = Σ_k J*ₖᵀ Λ*ₖ (uₖ - J̇ₖq̇ + …)
+//       + L*ᵀ J*_ilᵀ (F_ref - F_task + K_F (F_ref - F_meas) + K_I ∫(F_ref - F_meas) dt)
 //
 // Source: [Kim16] Appendix A, eqs. (28)-(44), with the corrections E6, E7, E10-E13 of
 // docs/notation.md. Implemented in reduced coordinates: with A = LᵀDL and W = D^-1/2 L^-T [...],
@@ -63,6 +64,10 @@ struct WboscProblem {
   std::vector<double> K_F;       // feedback on W_int f(tau_measured), 0: none
   // Low-pass of what is fed back: before + share (W_int f(tau_measured) - before); share 1: none.
   std::vector<double> measured_share, measured_before;
+  // Integral of that error: before + gain (F_int - filtered), within limit (0: none). It does not
+  // grow while a torque limit acts (hold_integral).
+  std::vector<double> integral_gain, integral_before, integral_limit;
+  bool hold_integral = false;
   const double* tau_measured = nullptr;  // na; nullptr: no feedback
 };
 
@@ -79,8 +84,12 @@ struct WboscSolution {
   std::vector<double> internal;  // internal_rows: W_int f under tau
   std::vector<double> internal_measured;  // internal_rows: W_int f under tau_measured
   std::vector<double> internal_filtered;  // internal_rows: the same after its low-pass
-  std::vector<int> level_rows;            // levels: rows of a weight above 0
-  std::vector<int> level_rank;            // levels
+  std::vector<double> internal_integral;  // internal_rows: N
+  std::vector<double> f_measured;  // contact_rows: ground on robot under tau_measured, else f
+  int internal_rank = 0;           // of the rows of internal forces
+  int named_internal_rank = 0;     // of the named ones
+  std::vector<int> level_rows;     // levels: rows of a weight above 0
+  std::vector<int> level_rank;     // levels
   // levels: the longest row of all levels over the smallest pivot that this level keeps (whitened
   // rows); 1 without rows
   std::vector<double> level_condition;
@@ -110,6 +119,7 @@ class Wbosc {
   void solve_level(int level, int first, int last) noexcept;
   void torque_from_range() noexcept;
   void add_internal_forces() noexcept;
+  void feed_back(int row, double measured) noexcept;
   void add_null_torque(int nulls, int rows) noexcept;
   void finish() noexcept;
   void contact_forces(const double* tau, double* f) noexcept;

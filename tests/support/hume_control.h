@@ -25,8 +25,8 @@ class SetBuilder {
       set_.axes[static_cast<std::size_t>(set_.axis_count++)] = a;
   }
   void tension(double wanted) {
-    set_.internals[static_cast<std::size_t>(set_.internal_count++)] = {0, kRightFoot, kLeftFoot,
-                                                                       wanted, 0.0};
+    set_.internals[static_cast<std::size_t>(set_.internal_count++)] = {
+        .contacts = {kRightFoot, kLeftFoot}, .reference = wanted};
   }
 
  private:

@@ -32,8 +32,8 @@ std::vector<int> signature(const Behavior& behavior, const ControlSpec& control)
   }
   for (int k = control.internals.first; k < control.internals.end(); ++k) {
     const InternalSpec& internal = behavior.internals[at(k)];
-    out.insert(out.end(),
-               {-2, internal.instance, internal.contact_a, internal.contact_b, internal.reference});
+    out.insert(out.end(), {-2, internal.instance, internal.value, internal.statics});
+    out.insert(out.end(), internal.contacts.begin(), internal.contacts.end());
   }
   return out;
 }

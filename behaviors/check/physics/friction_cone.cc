@@ -51,8 +51,8 @@ class ForceCheck {
   std::vector<double> references() const {
     std::vector<double> values;
     for (int k = 0; k < control_.internals.count; ++k) {
-      const Dependence needs = dependence_of(context_.behavior, spec(k).reference);
-      values.push_back(needs.fixed() ? spec(k).scale * values_.of(spec(k).reference).value_or(0.0)
+      const Dependence needs = dependence_of(context_.behavior, spec(k).value);
+      values.push_back(needs.fixed() ? spec(k).scale * values_.of(spec(k).value).value_or(0.0)
                                      : 0.0);
     }
     return values;
@@ -91,7 +91,7 @@ class ForceCheck {
       report(k, *found, Severity::error, with[static_cast<std::size_t>(k)], {});
       return;
     }
-    for (const int parameter : dependence_of(context_.behavior, spec(k).reference).parameters) {
+    for (const int parameter : dependence_of(context_.behavior, spec(k).value).parameters) {
       judge_range(k, parameter, with);
     }
   }
@@ -105,7 +105,7 @@ class ForceCheck {
       for (int i = 0; i < info.size; ++i) {
         edited.parameters()[static_cast<std::size_t>(info.slot + i)] = end;
       }
-      const auto value = edited.of(spec(k).reference);
+      const auto value = edited.of(spec(k).value);
       if (!value) continue;
       internal[static_cast<std::size_t>(k)] = spec(k).scale * *value;
       if (const auto found = overload(internal)) {

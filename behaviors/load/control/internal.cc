@@ -9,41 +9,111 @@
 namespace footfall::behaviors {
 namespace {
 
-using Pair = std::array<int, 2>;
+// The contacts of one force: two, or four.
+using Contacts = std::vector<int>;
 
-// The pairs in `between`; `all`: every pair of the active contacts.
-std::vector<Pair> read_between(LoadContext& context, const core::YamlNode& node,
-                               const std::vector<int>& contacts) {
-  std::vector<Pair> pairs;
+bool read_distinct(LoadContext& context, const core::YamlNode& node, Contacts& out) {
+  for (const core::YamlNode& item : node.items) {
+    const int contact = context.require_contact(item);
+    if (contact < 0) return false;
+    if (std::ranges::find(out, contact) != out.end()) {
+      context.error(item.mark, "same-foot", "an internal force acts between different feet");
+      return false;
+    }
+    out.push_back(contact);
+  }
+  return true;
+}
+
+// The forces in `between`; `all`: every pair of the active contacts.
+std::vector<Contacts> read_between(LoadContext& context, const core::YamlNode& node,
+                                   const std::vector<int>& contacts) {
+  std::vector<Contacts> forces;
   if (node.is_scalar() && node.scalar == "all") {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       for (std::size_t j = i + 1; j < contacts.size(); ++j) {
-        pairs.push_back({contacts[i], contacts[j]});
+        forces.push_back({contacts[i], contacts[j]});
       }
     }
-    return pairs;
+    return forces;
   }
-  if (!node.is_sequence() || node.items.size() != 2) {
-    core::report_expected(node, "two contacts or `all`", context.diagnostics);
-    return pairs;
+  if (!node.is_sequence() || (node.items.size() != 2 && node.items.size() != 4)) {
+    core::report_expected(node, "two contacts (a tension), four (a warp), or `all`",
+                          context.diagnostics);
+    return forces;
   }
-  const Pair pair = {context.require_contact(node.items[0]),
-                     context.require_contact(node.items[1])};
-  if (pair[0] < 0 || pair[1] < 0) return pairs;
-  if (pair[0] == pair[1]) {
-    context.error(node.items[1].mark, "same-foot",
-                  "an internal force acts between two feet, not one");
-    return pairs;
-  }
-  return {pair};
+  Contacts force;
+  if (read_distinct(context, node, force)) forces.push_back(force);
+  return forces;
 }
 
-bool same_pair(const InternalSpec& a, const Pair& b) {
-  return (a.contact_a == b[0] && a.contact_b == b[1]) ||
-         (a.contact_a == b[1] && a.contact_b == b[0]);
+bool same_contacts(const InternalSpec& a, const Contacts& b) {
+  return a.contact_count == static_cast<int>(b.size()) &&
+         std::is_permutation(b.begin(), b.end(), a.contacts.begin());
 }
 
-// Compiles an internal force except for its pair; nullopt after an error.
+// `{trajectory: ...}` or `{statics: ...}`.
+void compile_force_map(LoadContext& context, const DraftKey& key, ValueScope scope,
+                       InternalSpec& spec) {
+  const core::YamlNode& map = *key.node;
+  core::check_keys(map, kForceReferenceKeys, context.diagnostics);
+  const core::YamlNode* statics = map.find("statics");
+  const core::YamlNode* trajectory = map.find("trajectory");
+  if ((statics == nullptr) == (trajectory == nullptr) || (statics && map.entries.size() > 1)) {
+    context.error(map.mark, "expected",
+                  "expected `{statics: PART}` alone or `{trajectory: SHAPE, ...}`");
+    return;
+  }
+  if (statics != nullptr) {
+    spec.statics = context.compile_value(*statics, core::kNone, scope);
+    return;
+  }
+  if (!core::read_choice(*trajectory, kForceTrajectories, context.diagnostics,
+                         "a trajectory of a force")) {
+    return;
+  }
+  const std::vector<std::string> names = {"force"};
+  const std::vector<core::Dimension> dimensions = {core::kForce};
+  TaskSpec task;
+  std::vector<AxisSpec> axis(1);
+  task.reference = spec.reference;
+  compile_trajectory(context, map, {names, dimensions, dimensions, key.owner, false, true}, task,
+                     axis);
+  spec.reference = task.reference;
+  spec.value = axis[0].value;
+  spec.end_velocity = axis[0].end_velocity;
+}
+
+void compile_force_reference(LoadContext& context, const DraftKey& key, InternalSpec& spec) {
+  ValueScope scope;
+  scope.state = key.owner;
+  spec.mark = key.node->mark;
+  spec.reference.kind = ReferenceSpec::Kind::value;
+  spec.reference.owner = key.owner;
+  const auto next = static_cast<int>(context.reference_sources.size());
+  spec.reference.source =
+      context.reference_sources.try_emplace({key.node, key.owner}, next).first->second;
+  if (key.node->is_map()) {
+    compile_force_map(context, key, scope, spec);
+  } else if (key.node->is_scalar() && key.node->scalar == kForceReferences[0].word) {
+    core::YamlNode whole = *key.node;
+    whole.scalar = "1";
+    spec.statics = context.compile_value(whole, core::kNone, scope);
+  } else {
+    spec.value = context.compile_value(*key.node, core::kForce, scope);
+  }
+}
+
+// What the integral does without a gain.
+void warn_idle_integral_limit(LoadContext& context, const DraftItem& item,
+                              const InternalSpec& spec) {
+  const DraftKey* limit = item.find("integral_limit");
+  if (limit == nullptr || spec.integral >= 0) return;
+  context.warning(limit->node->mark, "no-effect",
+                  "`integral_limit` without `integral` has no effect");
+}
+
+// Compiles an internal force except for its contacts; nullopt after an error.
 std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem& item) {
   core::YamlNode map;
   map.kind = core::YamlNode::Kind::map;
@@ -57,29 +127,34 @@ std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem&
     return std::nullopt;
   }
   InternalSpec spec;
-  ValueScope scope;
-  scope.state = reference->owner;
-  spec.mark = reference->node->mark;
-  spec.reference = context.compile_value(*reference->node, core::kForce, scope);
+  compile_force_reference(context, *reference, spec);
   spec.feedback = compile_limit(context, item, "feedback", core::kNone);
+  spec.integral = compile_limit(context, item, "integral", core::kRate);
+  spec.integral_limit = compile_limit(context, item, "integral_limit", core::kForce);
   spec.bandwidth = compile_limit(context, item, "bandwidth", core::kRate);
-  if (const DraftKey* convention = item.find("convention")) {
-    const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
-    if (choice && *choice == 1) spec.scale = 0.5;
-  }
+  spec.ramp = compile_limit(context, item, "ramp", core::kTime);
+  warn_idle_integral_limit(context, item, spec);
   const auto& names = context.behavior.internal_instances;
   while (names[static_cast<std::size_t>(spec.instance)] != item.name) ++spec.instance;
   return spec;
 }
 
-// Notes whether the pair takes effect here: a force needs both of its ends in contact.
+// Mean force over what is written: of a pair ½ for `sum`, of a warp ¼.
+double scale_of(LoadContext& context, const DraftItem& item, int contacts) {
+  const DraftKey* convention = item.find("convention");
+  if (convention == nullptr) return 1.0;
+  const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
+  return choice && *choice == 1 ? 1.0 / contacts : 1.0;
+}
+
+// Notes whether a force takes effect here: it needs all of its feet in contact.
 void note_use(LoadContext& context, const DraftItem& item, const core::YamlNode& between,
-              const std::vector<Pair>& pairs, const std::vector<int>& contacts) {
+              const std::vector<Contacts>& forces, const std::vector<int>& contacts) {
   const auto holds = [&](int contact) {
     return std::ranges::find(contacts, contact) != contacts.end();
   };
   const bool active = std::ranges::any_of(
-      pairs, [&](const Pair& pair) { return holds(pair[0]) && holds(pair[1]); });
+      forces, [&](const Contacts& force) { return std::ranges::all_of(force, holds); });
   auto& uses = context.internal_uses;
   const auto same = std::ranges::find_if(
       uses, [&](const InternalUse& use) { return use.mark.place() == between.mark.place(); });
@@ -102,8 +177,8 @@ void report_idle_internals(LoadContext& context) {
   for (const InternalUse& use : context.internal_uses) {
     if (use.active) continue;
     context.error(use.mark, "idle-force",
-                  fmt::format("internal force '{}' never acts: no state with it has both feet in "
-                              "contact",
+                  fmt::format("internal force '{}' never acts: no state with it has all of its "
+                              "feet in contact",
                               use.name));
   }
 }
@@ -111,25 +186,26 @@ void report_idle_internals(LoadContext& context) {
 std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& draft,
                                             const std::vector<int>& contacts) {
   std::vector<InternalSpec> out;
-  const auto named = [&](const Pair& pair) {
-    return std::any_of(out.begin(), out.end(), [&](const auto& s) { return same_pair(s, pair); });
+  const auto named = [&](const Contacts& force) {
+    return std::ranges::any_of(out, [&](const auto& s) { return same_contacts(s, force); });
   };
   for (const bool all : {false, true}) {  // an entry for one pair overrides the entry for all pairs
     for (const DraftItem& item : draft.internals) {
       if (is_all(item) != all) continue;
-      const std::optional<InternalSpec> force = compile_force(context, item);
-      if (!force) continue;
+      const std::optional<InternalSpec> compiled = compile_force(context, item);
+      if (!compiled) continue;
       const core::YamlNode& between = *item.find("between")->node;
-      const std::vector<Pair> pairs = read_between(context, between, contacts);
-      note_use(context, item, between, pairs, contacts);
-      for (const Pair& pair : pairs) {
-        if (!named(pair)) {
-          out.push_back(*force);
-          out.back().contact_a = pair[0];
-          out.back().contact_b = pair[1];
+      const std::vector<Contacts> forces = read_between(context, between, contacts);
+      note_use(context, item, between, forces, contacts);
+      for (const Contacts& force : forces) {
+        if (!named(force)) {
+          InternalSpec& spec = out.emplace_back(*compiled);
+          spec.contact_count = static_cast<int>(force.size());
+          std::ranges::copy(force, spec.contacts.begin());
+          spec.scale = scale_of(context, item, spec.contact_count);
         } else if (!all) {
           context.error(between.mark, "duplicate",
-                        "another internal force acts between these two contacts already");
+                        "another internal force acts between these contacts already");
         }
       }
     }

@@ -53,6 +53,17 @@ class Quadruped : public testing::Test {
         *model_, std::vector<double>{}, tasks::ControllerSizes{2, 8, 2, 4}, 1e-3);
   }
 
+  // All legs alike: the feet are in a horizontal plane.
+  void stand_level() {
+    model::State state;
+    state.p_WB = {0.0, 0.0, 0.45};
+    for (std::size_t leg = 0; leg < 4; ++leg) {
+      state.q[3 * leg + 1] = 0.5;
+      state.q[3 * leg + 2] = -1.0;
+    }
+    model_->update(state);
+  }
+
   static std::string mjcf() {
     std::string legs;
     for (int leg = 0; leg < 4; ++leg) {
@@ -88,8 +99,8 @@ class Quadruped : public testing::Test {
     }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       for (std::size_t j = i + 1; j < contacts.size(); ++j) {
-        set.internals[static_cast<std::size_t>(set.internal_count++)] = {0, contacts[i],
-                                                                         contacts[j], tension, 0.0};
+        set.internals[static_cast<std::size_t>(set.internal_count++)] = {
+            .contacts = {contacts[i], contacts[j]}, .reference = tension};
       }
     }
     return set;
@@ -152,10 +163,48 @@ TEST_F(Quadruped, ForcesBetweenAllMoveNothing) {
   }
 }
 
+// Six tensions of four points in a plane fulfil one equation (a plane frame of four joints bears
+// one stress of its own), and no tension changes a vertical force.
+TEST_F(Quadruped, TensionsAndWarpAreTheCompleteBasisOnAPlane) {
+  stand_level();
+  compute(set_of({0, 1, 2, 3}, 0.0));
+  const tasks::WboscSolution& out = controller_->primary().solution();
+  EXPECT_EQ(12 - out.actuation_rank, 6);
+  EXPECT_EQ(out.named_internal_rank, 5);
+  EXPECT_EQ(out.internal_rank, 6);
+  compute(set_of({0, 1, 2}, 0.0));
+  EXPECT_EQ(out.named_internal_rank, 3);
+  compute(set_of({0, 1}, 0.0));
+  EXPECT_EQ(out.named_internal_rank, 1);
+}
+
+TEST_F(Quadruped, TheWarpLoadsOneDiagonalAndUnloadsTheOther) {
+  stand_level();
+  const std::vector<int> around = {0, 1, 3, 2};
+  ControlSet set = set_of(around, 0.0);
+  set.internal_count = 1;
+  set.internals[0] = {.contact_count = 4, .contacts = {0, 1, 3, 2}};
+  compute(set);
+  const tasks::ControllerResult without = controller_->result();
+  set.internals[0].reference = 20.0;
+  compute(set);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto c = static_cast<std::size_t>(around[i]);
+    const double change = controller_->result().force[c][2] - without.force[c][2];
+    EXPECT_NEAR(change, i % 2 == 0 ? 20.0 : -20.0, 1e-7);
+    EXPECT_NEAR(controller_->result().force[c][0], without.force[c][0], 1e-7);
+    EXPECT_NEAR(controller_->result().force[c][1], without.force[c][1], 1e-7);
+  }
+  EXPECT_NEAR(controller_->result().internal[0], 20.0, 1e-8);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(controller_->result().achieved[k], without.achieved[k], 1e-9);
+  }
+}
+
 TEST_F(Quadruped, AForceBetweenContactsThatDoNotHoldIsNotReported) {
   ControlSet set = set_of({0, 1}, 40.0);
   set.internals[1] = set.internals[0];
-  set.internals[0] = {0, 2, 3, 10.0, 0.0};
+  set.internals[0] = {.contacts = {2, 3}, .reference = 10.0};
   set.internal_count = 2;
   compute(set);
   EXPECT_TRUE(std::isnan(controller_->result().internal[0]));

@@ -111,7 +111,7 @@ TEST_F(Controller, MeasuredTensionIsFedBackThroughALowPass) {
   constexpr double kWanted = 40.0, kGain = 8.0, kBandwidth = 20.0;
   dual_.internal_count = 1;
   tasks::InternalCommand& force = dual_.internals[0];
-  force = {.contact_a = kRightFoot, .contact_b = kLeftFoot, .reference = kWanted};
+  force = {.contacts = {kRightFoot, kLeftFoot}, .reference = kWanted};
   const std::array<double, 6> error = {5.0, -10.0, 15.0, -5.0, 10.0, 20.0};
   ActiveControl control;
   control.primary = dual_;
@@ -142,6 +142,85 @@ TEST_F(Controller, MeasuredTensionIsFedBackThroughALowPass) {
   EXPECT_NEAR(last - kWanted, d / (1.0 + kGain), 1e-6);
 }
 
+// The integral takes the error to nothing. Stepped by hand: the same loop with I beside K.
+TEST_F(Controller, AnIntegralLeavesNoErrorOfTheTension) {
+  constexpr double kWanted = 40.0, kGain = 2.0, kIntegral = 30.0;
+  const double T = robot_.period_s();
+  const double a = std::exp(-2.0 * std::numbers::pi * 20.0 * T);
+  const std::array<double, 6> error = {5.0, -10.0, 15.0, -5.0, 10.0, 20.0};
+  ActiveControl control;
+  control.primary = dual_;
+  control.primary.internal_count = 1;
+  control.primary.internals[0] = {.contacts = {kRightFoot, kLeftFoot},
+                                  .reference = kWanted,
+                                  .feedback = kGain,
+                                  .integral = kIntegral,
+                                  .bandwidth = 20.0};
+  std::array<double, 6> measured{};
+  double y = kWanted, integral = 0.0, asked = kWanted, d = 0.0, m = 0.0;
+  for (int n = 0; n < 2000; ++n) {
+    controller_.compute(control, tick_++, measured.data(), tau_.data());
+    for (std::size_t j = 0; j < 6; ++j) measured[j] = tau_[j] + error[j];
+    m = controller_.result().internal_measured[0];
+    if (n == 1) d = m - asked;
+    if (n > 1) {
+      EXPECT_NEAR(m, asked + d, 1e-7) << n;
+    }
+    y = a * y + (1.0 - a) * m;
+    integral += kIntegral * T * (kWanted - y);
+    asked = kWanted + kGain * (kWanted - y) + integral;
+  }
+  // The slowest root's rate is K_I / (1 + K): exp(-10 x 1.33 s).
+  EXPECT_NEAR(m, kWanted, 1e-4 * std::abs(d));
+}
+
+// A motor at its limit cannot give more: what is integrated then would have to be undone later.
+TEST_F(Controller, TheIntegralOfAForceWaitsWhileAJointIsAtItsLimit) {
+  constexpr double kTooMuch = 5000.0;  // N
+  ActiveControl control;
+  control.primary = dual_;
+  control.primary.internal_count = 1;
+  control.primary.internals[0] = {.contacts = {kRightFoot, kLeftFoot},
+                                  .reference = kTooMuch,
+                                  .integral = 100.0,
+                                  .integral_limit = 90.0,
+                                  .bandwidth = 20.0};
+  tasks::WholeBodyController limited{
+      model_, std::vector<double>(6, 50.0), {3, 12, 3, 2}, robot_.period_s()};
+  std::array<double, 6> measured{};
+  const auto run = [&](tasks::WholeBodyController& controller) {
+    for (int n = 0; n < 100; ++n) {
+      controller.compute(control, tick_++, measured.data(), tau_.data());
+    }
+    return controller.primary().solution().internal_integral[0];
+  };
+  const double waits = run(limited);
+  EXPECT_TRUE(limited.result().limited);
+  // One tick passes before the limit is known.
+  EXPECT_LE(std::abs(waits), 100.0 * robot_.period_s() * kTooMuch);
+  EXPECT_EQ(run(limited), waits);
+  EXPECT_EQ(std::abs(run(controller_)), 90.0);  // without limits of torque: that of the integral
+}
+
+TEST_F(Controller, AForceGrowsInItsRampFromZero) {
+  ActiveControl control;
+  control.primary = dual_;
+  control.primary.internal_count = 1;
+  const double T = robot_.period_s();
+  control.primary.internals[0] = {
+      .contacts = {kRightFoot, kLeftFoot}, .reference = 60.0, .ramp = 6.0 * T};
+  for (int n = 0; n < 10; ++n) {
+    compute(control);
+    EXPECT_NEAR(controller_.result().internal[0], 10.0 * std::min(n, 6), 1e-7);
+    EXPECT_NEAR(controller_.result().internal_reference[0], 10.0 * std::min(n, 6), 1e-12);
+  }
+  control.primary.internal_count = 0;
+  compute(control);
+  control.primary.internal_count = 1;
+  compute(control);
+  EXPECT_NEAR(controller_.result().internal[0], 0.0, 1e-7) << "in force anew";
+}
+
 TEST_F(Controller, TensionNotNamedIsZeroAndNamedTensionIsReported) {
   torque_of(dual_);
   const auto& force = controller_.result().force;
@@ -158,7 +237,7 @@ TEST_F(Controller, TensionNotNamedIsZeroAndNamedTensionIsReported) {
   SetBuilder builder(dual_);
   fill_dual_set(dual_);
   dual_.internal_count = 1;
-  dual_.internals[0] = {0, kRightFoot, kLeftFoot, 75.0, 0.0};
+  dual_.internals[0] = {.contacts = {kRightFoot, kLeftFoot}, .reference = 75.0};
   torque_of(dual_);
   EXPECT_NEAR(apart(), 75.0, 1e-7);
   EXPECT_NEAR(controller_.result().internal[0], 75.0, 1e-7);

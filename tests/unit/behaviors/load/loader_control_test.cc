@@ -196,7 +196,7 @@ TEST(LoaderControl, InternalForcesAreStoredByContact) {
       "{tension: {between: [right_foot, left_foot], reference: 100 N, feedback: 1.5, "
       "convention: sum}}}\n");
   ASSERT_EQ(b->internals.size(), 1u);
-  EXPECT_EQ(b->internals[0].contact_b, 1);
+  EXPECT_EQ(b->internals[0].contacts[1], 1);
   EXPECT_EQ(b->internals[0].scale, 0.5);
   EXPECT_GE(b->signals.find("internal.tension.measured"), 0);
 }
