@@ -58,7 +58,8 @@ class ControlMerge {
     Segment segment;
     std::int64_t start_tick = 0;
     double entry = 0.0;  // at the start of the reference
-    double value = 0.0;  // in force
+    double value = 0.0;  // in force; by statics: of the last tick that was not
+    bool by_statics = false;
   };
   // One set of active tasks, with the same numbering as its tasks::ControlSet.
   struct Bank {

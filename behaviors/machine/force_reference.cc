@@ -53,6 +53,12 @@ void ControlMerge::fill_forces(Bank& bank, tasks::ControlSet& set,
     state = kept == nullptr ? ForceState{} : *kept;
     state.source = force.reference.source;
     state.owner_serial = serial;
+    if (state.by_statics) {  // the controller's, of the last tick
+      const double last =
+          statechart_.context().signals[behavior_.layout.internal[at(force.instance)].reference];
+      if (std::isfinite(last)) state.value = last;
+    }
+    state.by_statics = force.statics >= 0;
     if (!goes_on) start_force(bank, state, force);
   }
 }
