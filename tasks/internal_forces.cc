@@ -101,25 +101,29 @@ const InternalForces::Memory* InternalForces::find(std::uint32_t key,
 // The low-pass of a force that was not in force in the last tick begins at its reference: feedback
 // comes in with the low-pass's own time, whatever the torques before were.
 void InternalForces::name_row(WboscProblem& problem, int row, const InternalCommand& c,
-                              double reference, std::int64_t tick) const noexcept {
+                              double reference, std::int64_t tick,
+                              bool alone) const noexcept {
   const std::size_t r = at(row);
   const Memory* last = find(key_of(c.contacts, c.contact_count), tick - 1);
+  double share = 1.0;
   if (c.ramp > 0.0) {
-    const double since = static_cast<double>(last ? tick - last->began : 0) * period_;
-    reference *= std::min(1.0, since / c.ramp);
+    const std::int64_t ticks = last && last->began >= 0 ? tick - last->began : 0;
+    share = std::min(1.0, static_cast<double>(ticks) * period_ / c.ramp);
   }
+  reference *= share;
   constexpr double kTurn = 2.0 * std::numbers::pi;
   problem.F_int[r] = reference;
   problem.K_F[r] = c.feedback;
+  problem.measured_part[r] = alone ? share : 0.0;
   problem.measured_share[r] = c.bandwidth > 0.0 ? -std::expm1(-kTurn * c.bandwidth * period_) : 1.0;
   problem.measured_before[r] = last ? last->filtered : reference;
-  problem.integral_gain[r] = c.integral * period_;
+  problem.integral_gain[r] = alone ? c.integral * period_ : 0.0;
   problem.integral_before[r] = last && c.integral > 0.0 ? last->integral : 0.0;
   problem.integral_limit[r] = c.integral_limit;
 }
 
-void InternalForces::assemble(WboscProblem& problem, const ControlSet& set,
-                              std::int64_t tick) const noexcept {
+void InternalForces::assemble(WboscProblem& problem, const ControlSet& set, std::int64_t tick,
+                              bool alone) const noexcept {
   const int columns = problem.contact_rows;
   int row = 0;
   const auto begin_row = [&](const std::array<int, 4>& contacts, int count) {
@@ -141,13 +145,13 @@ void InternalForces::assemble(WboscProblem& problem, const ControlSet& set,
       reference = 0.0;
       for (int k = 0; k < columns; ++k) reference += c.statics * w[k] * rest[at(k)];
     }
-    name_row(problem, row++, c, reference, tick);
+    name_row(problem, row++, c, reference, tick, alone);
   }
   problem.named_internal_rows = row;
   const auto add = [&](const std::array<int, 4>& contacts, int count) {
     if (row == rows_ || named(set, contacts, count)) return;
     begin_row(contacts, count);
-    name_row(problem, row++, {}, 0.0, tick);
+    name_row(problem, row++, {}, 0.0, tick, alone);
   };
   for (int i = 0; i < set.contact_count; ++i) {
     for (int j = i + 1; j < set.contact_count; ++j) {
@@ -160,7 +164,8 @@ void InternalForces::assemble(WboscProblem& problem, const ControlSet& set,
   problem.internal_rows = row;
 }
 
-void InternalForces::keep(const Wbosc& solver, const ControlSet& set, std::int64_t tick) noexcept {
+void InternalForces::keep(const Wbosc& solver, const ControlSet& set, std::int64_t tick,
+                          bool alone) noexcept {
   int row = 0;
   for (int i = 0; i < set.internal_count; ++i) {
     const InternalCommand& c = set.internals[at(i)];
@@ -168,7 +173,8 @@ void InternalForces::keep(const Wbosc& solver, const ControlSet& set, std::int64
     const std::uint32_t key = key_of(c.contacts, c.contact_count);
     const Memory* last = find(key, tick - 1);
     if (last == nullptr) last = find(key, tick);  // the other law's, just kept
-    const std::int64_t began = last ? last->began : tick;
+    std::int64_t began = last ? last->began : -1;
+    if (began < 0 && alone) began = tick;
     Memory* place =
         memory_.data();  // of the same force, else the one not used for the longest time
     for (Memory& m : memory_) {
@@ -176,7 +182,7 @@ void InternalForces::keep(const Wbosc& solver, const ControlSet& set, std::int64
       if (place->key != key && m.tick < place->tick) place = &m;
     }
     const WboscSolution& out = solver.solution();
-    *place = {key, began, tick, out.internal_filtered[at(row)], out.internal_integral[at(row)]};
+    *place = {key, tick, began, out.internal_filtered[at(row)], out.internal_integral[at(row)]};
     ++row;
   }
 }

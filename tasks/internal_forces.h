@@ -24,10 +24,12 @@ class InternalForces {
       : model_(model), period_(period), rows_(rows) {}
 
   // The law's rows into the problem: those that it names and whose contacts hold, in order, then
-  // the rest of the basis at 0 N. Allocates nothing.
-  void assemble(WboscProblem& problem, const ControlSet& set, std::int64_t tick) const noexcept;
+  // the rest of the basis at 0 N. `alone`: no other law acts, so that what is measured is this one's
+  // and is fed back. Allocates nothing.
+  void assemble(WboscProblem& problem, const ControlSet& set, std::int64_t tick,
+                bool alone) const noexcept;
   // After solve(): remembers what the rows' feedback has come to.
-  void keep(const Wbosc& solver, const ControlSet& set, std::int64_t tick) noexcept;
+  void keep(const Wbosc& solver, const ControlSet& set, std::int64_t tick, bool alone) noexcept;
   // Goes on where another controller of the same robot stands.
   void take_over(const InternalForces& old) noexcept { memory_ = old.memory_; }
 
@@ -35,12 +37,13 @@ class InternalForces {
   // A force by its contacts, the smaller first: one pair has one measured force, whatever its name.
   struct Memory {
     std::uint32_t key = 0;  // 0: unused
-    std::int64_t began = 0, tick = -2;
+    std::int64_t tick = -2;
+    std::int64_t began = -1;                // to act alone; -1: not yet
     double filtered = 0.0, integral = 0.0;  // N, mean convention
   };
   const Memory* find(std::uint32_t key, std::int64_t tick) const noexcept;
   void name_row(WboscProblem& problem, int row, const InternalCommand& command, double reference,
-                std::int64_t tick) const noexcept;
+                std::int64_t tick, bool alone) const noexcept;
 
   const model::ControlModel& model_;
   double period_;

@@ -43,16 +43,16 @@ void WholeBodyController::compute(const ActiveControl& control, std::int64_t tic
   const bool frozen = control.has_other && control.form == TransitionForm::frozen;
   const bool both = control.has_other && (!frozen || control.transition_entered);
   std::fill(primary_.problem().external.begin(), primary_.problem().external.end(), 0.0);
-  if (both) solve_law(other_, control.other, tick, tau_measured, other_axes_.data());
+  const double w = both && !frozen ? control.other_weight : 0.0;
+  if (both) solve_law(other_, control.other, w == 1.0, tick, tau_measured, other_axes_.data());
   if (frozen) {
     if (control.transition_entered) sample_frozen_force(control);
     add_frozen_force(control);
   }
-  solve_law(primary_, control.primary, tick, tau_measured, result_.axes.data());
+  solve_law(primary_, control.primary, w == 0.0, tick, tau_measured, result_.axes.data());
 
-  if (both) internal_.keep(other_, control.other, tick);
-  internal_.keep(primary_, control.primary, tick);
-  const double w = both && !frozen ? control.other_weight : 0.0;
+  if (both) internal_.keep(other_, control.other, tick, w == 1.0);
+  internal_.keep(primary_, control.primary, tick, w == 0.0);
   const WboscSolution& a = primary_.solution();
   const WboscSolution& b = other_.solution();
   result_.limited = a.limited || (both && b.limited);
@@ -63,8 +63,9 @@ void WholeBodyController::compute(const ActiveControl& control, std::int64_t tic
   report(control);
 }
 
-void WholeBodyController::solve_law(Wbosc& solver, const ControlSet& set, std::int64_t tick,
-                                    const double* tau_measured, AxisEvaluation* axes) noexcept {
+void WholeBodyController::solve_law(Wbosc& solver, const ControlSet& set, bool alone,
+                                    std::int64_t tick, const double* tau_measured,
+                                    AxisEvaluation* axes) noexcept {
   WboscProblem& problem = solver.problem();
   problem.factor = model_.factor();
   problem.bias = model_.bias().data();
@@ -74,7 +75,7 @@ void WholeBodyController::solve_law(Wbosc& solver, const ControlSet& set, std::i
   assemble_contacts(problem, set);
   assemble_tasks(problem, set, tick, axes);
   problem.hold_integral = result_.limited;
-  internal_.assemble(problem, set, tick);
+  internal_.assemble(problem, set, tick, alone);
   solver.solve();
 }
 

@@ -78,7 +78,7 @@ class WholeBodyController {
   const Wbosc& primary() const noexcept { return primary_; }
 
  private:
-  void solve_law(Wbosc& solver, const ControlSet& set, std::int64_t tick,
+  void solve_law(Wbosc& solver, const ControlSet& set, bool alone, std::int64_t tick,
                  const double* tau_measured, AxisEvaluation* axes) noexcept;
   void assemble_contacts(WboscProblem& problem, const ControlSet& set) const noexcept;
   void assemble_tasks(WboscProblem& problem, const ControlSet& set, std::int64_t tick,

@@ -142,7 +142,7 @@ constexpr KeySpec kInternalRows[] = {
     key("integral_limit", computed(quantity(kForce)), "limit of what the integral adds")
         .otherwise("none"),
     key("ramp", computed(quantity(kTime)),
-        "in which the reference grows from 0 N once its contacts hold")
+        "in which the reference and what is fed back grow from nothing once its contacts hold")
         .otherwise("0 s"),
     key("bandwidth", computed(quantity(kRate, "a frequency in Hz")),
         "of the first-order low-pass of the measured force that is fed back; 0 Hz: none")

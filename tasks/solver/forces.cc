@@ -88,7 +88,9 @@ void Wbosc::add_internal_forces() noexcept {
 void Wbosc::feed_back(int row, double measured) noexcept {
   const std::size_t i = extent(row);
   const double before = problem_.measured_before[i];
-  const double filtered = before + problem_.measured_share[i] * (measured - before);
+  const double part = problem_.measured_part[i];
+  const double fed_back = (1.0 - part) * problem_.F_int[i] + part * measured;
+  const double filtered = before + problem_.measured_share[i] * (fed_back - before);
   const double error = problem_.F_int[i] - filtered;
   solution_.internal_measured[i] = measured;
   solution_.internal_filtered[i] = filtered;

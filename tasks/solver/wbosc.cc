@@ -43,6 +43,7 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
     rows->assign(extent(sizes.internal_rows), 0.0);
   }
   problem_.measured_share.assign(extent(sizes.internal_rows), 1.0);
+  problem_.measured_part.assign(extent(sizes.internal_rows), 1.0);
   solution_.asked.assign(extent(sizes.na), 0.0);
   solution_.tau.assign(extent(sizes.na), 0.0);
   solution_.f.assign(extent(sizes.contact_rows), 0.0);
