@@ -31,6 +31,7 @@ enum class Fault : std::uint8_t {
   load_air,           // a foot that swung is loaded without ground contact
   sensor_clock,       // the sensors' clock jumps or stands still
   sensor_nan,         // a measured value that the estimator uses is NaN or infinite
+  slip,               // a foot of the control law slides along the ground
   count
 };
 inline constexpr int kFaultCount = static_cast<int>(Fault::count);
@@ -44,7 +45,7 @@ constexpr std::string_view fault_name(Fault fault) {
       "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
       "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
       "execution", "event.overflow", "rank.loss",    "no_estimate", "script.stuck", "swing.contact",
-      "condition", "load.air",       "sensor.clock", "sensor.nan"};
+      "condition", "load.air",       "sensor.clock", "sensor.nan", "slip"};
   return names[static_cast<std::size_t>(fault)];
 }
 

@@ -56,6 +56,11 @@ void add_robot(const model::RobotDescription& robot, core::SignalTable& table,
                  "force predicted by the control law, ground on robot, world"));
   }
   for (const auto& contact : robot.contacts) {
+    layout.force_est.push_back(
+        add_axes(table, "force_est." + contact.name, core::kForce,
+                 "force that the measured joint torques give, ground on robot, world"));
+  }
+  for (const auto& contact : robot.contacts) {
     layout.point.push_back(
         add_axes(table, "point." + contact.name, core::kLength, "contact point, world"));
   }

@@ -87,6 +87,7 @@ struct SignalLayout {
   std::vector<int> support;      // support.NAME: 1 while in the contact set of the control law
   std::vector<int> force;        // force.NAME.{x,y,z}: measured, ground on robot, N, world
   std::vector<int> force_cmd;    // force_cmd.NAME.{x,y,z}: predicted by the control law
+  std::vector<int> force_est;    // force_est.NAME.{x,y,z}: by the measured joint torques
   std::vector<int> point;        // point.NAME.{x,y,z}: contacts first, then points; m, world
   std::vector<int> joint;        // joint.NAME.{position,velocity,torque,command,motor}
   std::vector<TaskSignals> task;

@@ -26,6 +26,7 @@ ControlLoop::ControlLoop(const behaviors::Behavior& behavior, hal::Hardware& har
                   period_),
       ranks_(behavior, model_),
       swings_(behavior),
+      slips_(behavior),
       safety_(behavior.robot),
       faults_(behavior),
       writer_(behavior, signals_),
@@ -113,6 +114,7 @@ void ControlLoop::compute() noexcept {
   faults_.take(ranks_.check(machine_->control_spec(), controller_.result()), *machine_);
   faults_.take(swings_.check(machine_->control_spec(), estimate_.contact, machine_->stepping()),
                *machine_);
+  faults_.take(slips_.check(machine_->control().primary, model_, controller_.result()), *machine_);
   faults_.take(safety_.filter(commands_, outside_.limit_steps()), *machine_);
   sensing_.commanded(commands_);
   writer_.write_control(*machine_, controller_.result(), commands_, safety_.torque_step(),

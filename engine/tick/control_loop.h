@@ -19,6 +19,7 @@
 #include "engine/tick/safety.h"
 #include "engine/tick/settings.h"
 #include "engine/tick/signals.h"
+#include "engine/tick/slip_watch.h"
 #include "engine/tick/swing_watch.h"
 #include "engine/watch/sensing.h"
 #include "hal/hardware.h"
@@ -137,6 +138,7 @@ class ControlLoop {
   tasks::WholeBodyController controller_;
   RankWatch ranks_;
   SwingWatch swings_;
+  SlipWatch slips_;
   SafetyFilter safety_;
   FaultMonitor faults_;
   SignalWriter writer_;

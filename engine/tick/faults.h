@@ -12,7 +12,7 @@ namespace footfall::engine {
 // Where and how much, for faults of a joint: torque.limit (torque asked for, N m), torque.step
 // (change since the last tick, N m), joint.limit (position, rad); of a contact: swing.long (time in
 // the air, s), swing.contact (time under load, s), load.air (time since its
-// release, s); of a task instance: condition (ratio).
+// release, s), slip (way along the ground, m); of a task instance: condition (ratio).
 struct FaultPlace {
   int joint;  // or contact, or task instance; -1: the fault has no place
   double value;

@@ -134,6 +134,7 @@ void SignalWriter::write_control(const behaviors::Machine& machine,
   for (std::size_t c = 0; c < layout.support.size(); ++c) {
     signals_[layout.support[c]] = 0.0;
     put(signals_, layout.force_cmd[c], result.force[c]);
+    put(signals_, layout.force_est[c], result.force_measured[c]);
   }
   for (int i = 0; i < control.primary.contact_count; ++i) {
     signals_[layout.support[at(control.primary.contacts[at(i)])]] = 1.0;

@@ -26,6 +26,7 @@ void ControlLoop::take_over(ControlLoop& old, const behaviors::TakeOverMap& map,
   // Back at once: what brought the former behavior back is to be reacted to, if it stays.
   faults_.take_over(old.faults_, change == ValueChange::at_once);
   swings_.take_over(old.swings_);
+  slips_.take_over(old.slips_);
   safety_.take_over(old.safety_);
   writer_.take_over(old.writer_, map);
   const bool ramped = change == ValueChange::ramped;

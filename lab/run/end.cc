@@ -28,6 +28,8 @@ const char* unit_of(Fault fault) {
     case Fault::swing_contact:
     case Fault::load_air:
       return "s";
+    case Fault::slip:
+      return "m";
     case Fault::joint_limit:
       return "rad";
     case Fault::condition:
@@ -44,7 +46,8 @@ const std::string& place_name(const ControlLoop& loop, Fault fault,
   const auto index = static_cast<std::size_t>(place.joint);
   if (fault == Fault::condition) return loop.behavior().task_instances[index].name;
   const bool of_contact =
-      fault == Fault::swing_too_long || fault == Fault::swing_contact || fault == Fault::load_air;
+      fault == Fault::swing_too_long || fault == Fault::swing_contact || fault == Fault::load_air ||
+      fault == Fault::slip;
   return of_contact ? robot.contacts[index].name : robot.joints[index].name;
 }
 

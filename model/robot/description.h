@@ -94,6 +94,7 @@ struct RobotDescription {
   // Of a level, largest over smallest pivot. At 100 a model that is wrong by 1 % makes the
   // acceleration in the worst direction wrong by all of it.
   double condition_limit = 100.0;
+  double slip_limit = 0.01;  // m, along the ground, in about 0.2 s
   double imu_age = 0.02;      // s, without new IMU data
   double mocap_age = 0.2;     // s, without a new frame of motion capture
   double edit_ramp = 0.1;     // s, shortest of a person's edits

@@ -85,6 +85,8 @@ constexpr auto kRules = std::to_array<FaultRule>({
      "a measured value that the estimator uses is not a number",
      Reaction::safe_state,
      {}},
+    {Fault::slip, "a foot slides along the ground by more than `limits.slip`", Reaction::keep_going,
+     {}},
 });
 
 constexpr bool in_order() {
@@ -132,6 +134,7 @@ std::string why_never(const RobotDescription& robot, Fault fault) {
     case Fault::swing_too_long:
     case Fault::swing_contact:
     case Fault::load_air:
+    case Fault::slip:
       return robot.contacts.empty() ? "it has no `contacts`" : "";
     default:
       return {};

@@ -129,6 +129,10 @@ constexpr KeySpec kLimitsRows[] = {
     key("torque_step", quantity(kTorque), "change of a joint's torque between two ticks")
         .otherwise("none"),
     key("swing", quantity(kTime), "of a foot in the air while the behavior steps").otherwise("1 s"),
+    key("slip", quantity(kLength),
+        "by which a foot slides along the ground in about 0.2 s, above which the fault `slip` is "
+        "raised")
+        .otherwise("1 cm"),
     key("condition", quantity(kNone, "a ratio"),
         "of a level's largest to its smallest pivot (`task.TASK.condition`), above which the fault "
         "`condition` is raised; at 100 an error of the model of 1 % is a whole one of the task")

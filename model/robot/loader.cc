@@ -339,6 +339,11 @@ class RobotLoader {
                                               "a time above zero and at most 60 s")
                                .value_or(robot_.swing_limit);
     }
+    if (const YamlNode* const slip = node.find("slip")) {
+      robot_.slip_limit = core::read_bounded(*slip, core::kLength, kTiny, kInfinity, diagnostics_,
+                                             "a length above zero")
+                              .value_or(robot_.slip_limit);
+    }
     if (const YamlNode* const condition = node.find("condition")) {
       robot_.condition_limit = core::read_bounded(*condition, core::kNone, 1.0, kInfinity,
                                                   diagnostics_, "a ratio of at least 1")

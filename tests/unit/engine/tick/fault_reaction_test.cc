@@ -112,6 +112,12 @@ void bend_slightly(hal::Sensors& s) {
   }
 }
 
+// Pushed along the ground, with a torque that pushes, too.
+void slide(hal::Sensors& s) {
+  s.v_WB = {20.0, 0.0, 0.0};
+  s.tau[0] += 30.0;
+}
+
 void lift_left(hal::Sensors& s) { s.contact[1] = false; }
 
 void raise(engine::ControlLoop& loop, const char* event, int times) {
@@ -180,6 +186,8 @@ Provocation provocation(Fault fault) {
     case Fault::swing_contact:  // since the first tick: beyond half of limits.swing in kCause
       return {
           .spoil = [](hal::Sensors& s) { s.contact[1] = true; }, .from = 0, .after_machine = true};
+    case Fault::slip:  // with 20 m/s in a tick
+      return {.spoil = slide, .after_machine = true};
     case Fault::load_air:
       return {.spoil = lift_left, .from = 0, .after_machine = true};
     case Fault::condition:
