@@ -121,7 +121,7 @@ struct ControlModel::Mujoco {
 };
 
 ControlModel::ControlModel(const RobotDescription& robot, const ModelDeviation& deviation)
-    : mj_(std::make_unique<Mujoco>()) {
+    : mj_(std::make_unique<Mujoco>()), terrain_(deviation.terrain) {
   mj_->model.reset(load_robot_model(robot.model_path));
   mjModel* m = mj_->model.get();
   check_structure(m, robot);
@@ -177,6 +177,7 @@ void ControlModel::place_points(const RobotDescription& robot) {
           0.0);
     }
   }
+  normals_.assign(robot.contacts.size(), {0.0, 0.0, 1.0});
   points_.resize(anchors_.size());
   fresh_.assign(anchors_.size(), 0);
   frames_.resize(anchors_.size());
@@ -240,7 +241,10 @@ void ControlModel::update_positions() noexcept {
       points_[i].position[k] = d->xpos[3 * a.body + static_cast<int>(k)] + R[3 * k] * a.offset[0] +
                                R[3 * k + 1] * a.offset[1] + R[3 * k + 2] * a.offset[2];
     }
-    points_[i].position[2] -= a.radius;
+    if (i < normals_.size()) {
+      normals_[i] = terrain_.nearest(points_[i].position).normal;
+      for (std::size_t k = 0; k < 3; ++k) points_[i].position[k] -= a.radius * normals_[i][k];
+    }
     fresh_[i] = fresh_frame_[i] = 0;
   }
   fresh_angular_ = false;

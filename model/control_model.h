@@ -14,15 +14,17 @@
 #include "model/robot/description.h"
 #include "model/sensor_mounts.h"
 #include "model/state.h"
+#include "model/terrain.h"
 #include "model/tree_factor.h"
 
 namespace footfall::model {
 
-// What the controller believes differently from the robot's file.
+// What the controller believes: of the robot differently from its file, and of the ground.
 struct ModelDeviation {
   double mass_scale = 1.0;                                 // every mass and inertia
   std::map<std::string, double> mass_scales;               // likewise, of single links
   std::map<std::string, std::array<double, 3>> com_shift;  // m, link frame
+  Terrain terrain;                                         // as believed; empty: level ground
 };
 
 // A 3-row task Jacobian and what goes with it; pointers stay valid for the model's life.
@@ -56,13 +58,13 @@ class ControlModel {
   double gravity() const noexcept { return gravity_; }  // m/s^2, downwards
   const SensorMounts& mounts() const noexcept { return mounts_; }
 
-  // Everything below is of the state given last. No allocation. `normal_up`: contact points lie at
-  // centre - radius * world z.
+  // Everything below is of the state given last. No allocation.
   void update(const State& state) noexcept;
   const State& state() const noexcept { return state_; }
 
-  // Points: the robot's contacts in order, then its named points. Contact points are material
-  // points of the foot at this instant.
+  // Points: the robot's contacts in order, then its named points. Contact points lie at the ball's
+  // centre - radius * normal of the believed ground nearest to the centre, and are material points
+  // of the foot at this instant.
   // Positions are always there; the rest of a named point is computed when it is first asked for.
   const Kinematics3& point(int index) const noexcept {
     if (fresh_[static_cast<std::size_t>(index)] == 0) fill_point(index);
@@ -71,9 +73,12 @@ class ControlModel {
   const std::array<double, 3>& point_position(int index) const noexcept {
     return points_[static_cast<std::size_t>(index)].position;
   }
-  // Unit normal of the ground at a contact, out of the ground, world axes.
-  const std::array<double, 3>& contact_normal(int) const noexcept { return kUp; }
-  static constexpr std::array<double, 3> kUp = {0.0, 0.0, 1.0};
+  // Of the believed ground nearest to a contact's ball: unit, out of the ground, world axes;
+  // (0, 0, 1) on level ground.
+  const std::array<double, 3>& contact_normal(int contact) const noexcept {
+    return normals_[static_cast<std::size_t>(contact)];
+  }
+  const Terrain& terrain() const noexcept { return terrain_; }  // as believed
   // Angular velocity of the link that a point is on, rad/s, world axes.
   std::array<double, 3> point_angular_velocity(int index) const noexcept;
   // Orientation of the same points: of the site (or link) that the robot file names. Computed when
@@ -110,7 +115,7 @@ class ControlModel {
   struct Anchor {
     int body = 0;
     std::array<double, 3> offset{};  // m, link frame
-    double radius = 0.0;             // m, below it lies the contact point
+    double radius = 0.0;             // m, from it to the contact point
     std::array<double, 9> R_LF{};    // of its frame in the link's, row-major
   };
   void update_positions() noexcept;
@@ -132,6 +137,8 @@ class ControlModel {
   double gravity_ = 9.81;
   State state_;
   std::vector<Anchor> anchors_;
+  Terrain terrain_;
+  std::vector<std::array<double, 3>> normals_;  // by contact
   mutable std::vector<Kinematics3> points_;    // Jacobians of named points are filled on demand
   mutable std::vector<unsigned char> fresh_;   // which of them are of the state given last
   mutable std::vector<FrameRotation> frames_;  // on demand too

@@ -130,6 +130,10 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   json["mass_scale"] = s.deviation.mass_scale;
   json["mass_scales"] = s.deviation.mass_scales;
   json["com_shift"] = s.deviation.com_shift;
+  json["terrain"] = nlohmann::json::array();
+  for (const model::TerrainPiece& box : s.deviation.terrain.boxes) {
+    json["terrain"].push_back({{"centre", box.centre}, {"R_WP", box.R_WP}, {"half", box.half}});
+  }
   json["surface"] = nlohmann::json::array();
   for (const model::SurfaceRamp& ramp : s.surface.ramps) {
     json["surface"].push_back({ramp.from, ramp.to, ramp.rise});
@@ -160,6 +164,12 @@ RunSetup read_setup(const std::string& text) {
     json.at("mass_scale").get_to(s.deviation.mass_scale);
     json.at("mass_scales").get_to(s.deviation.mass_scales);
     json.at("com_shift").get_to(s.deviation.com_shift);
+    for (const auto& box : json.value("terrain", nlohmann::json::array())) {
+      model::TerrainPiece& piece = s.deviation.terrain.boxes.emplace_back();
+      box.at("centre").get_to(piece.centre);
+      box.at("R_WP").get_to(piece.R_WP);
+      box.at("half").get_to(piece.half);
+    }
     for (const auto& ramp : json.at("surface")) {
       s.surface.ramps.push_back({ramp.at(0), ramp.at(1), ramp.at(2)});
     }

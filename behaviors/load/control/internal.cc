@@ -17,7 +17,9 @@ bool read_distinct(LoadContext& context, const core::YamlNode& node, Contacts& o
     const int contact = context.require_contact(item);
     if (contact < 0) return false;
     if (std::ranges::find(out, contact) != out.end()) {
-      context.error(item.mark, "same-foot", "an internal force acts between different feet");
+      context.error(item.mark, "same-foot",
+                    node.items.size() == 2 ? "an internal force acts between two feet, not one"
+                                           : "a warp acts on four different feet");
       return false;
     }
     out.push_back(contact);

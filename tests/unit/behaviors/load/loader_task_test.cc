@@ -178,7 +178,7 @@ TEST(LoaderTask, AForceThatActsInOneOfItsStatesIsGoodAndOneThatNeverDoesIsAnErro
   };
   EXPECT_EQ(problems(text("right_foot, left_foot")), "");
   EXPECT_EQ(problems(text("left_foot")),
-            "b.yaml:4:27: error: internal force 't' never acts: no state with it has both feet in "
+            "b.yaml:4:27: error: internal force 't' never acts: no state with it has all of its feet in "
             "contact\n");
 }
 TEST(LoaderTask, AGainThatEveryTaskReplacesIsUnusedAndOneThatSomeTaskTakesIsNot) {
@@ -199,7 +199,7 @@ TEST(LoaderTask, APairHasOneForce) {
                      "  internal:\n    a: {between: [right_foot, left_foot], reference: 1 N}\n"
                      "    b: {between: [left_foot, right_foot], reference: 1 N}\n"
                      "    c: {between: [left_foot, left_foot], reference: 1 N}\n"),
-            "b.yaml:7:18: error: another internal force acts between these two contacts already\n"
+            "b.yaml:7:18: error: another internal force acts between these contacts already\n"
             "b.yaml:8:30: error: an internal force acts between two feet, not one\n");
 }
 TEST(LoaderTask, RegionsThatContradictEachOtherAreErrors) {
