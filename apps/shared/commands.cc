@@ -200,9 +200,12 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
 }
 
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world, bool held) {
-  return {world.variation.least_friction().value_or(world.friction), world.physics.steps_per_tick,
+  return {world.variation.least_friction().value_or(world.friction),
+          world.physics.steps_per_tick,
           world.actuators.command_delay + world.variation.most_command_delay(),
           world.actuators.model == sim::ActuatorModel::series_elastic,
+          world.actuators.measurement_delay,
+          world.actuators.viscous,
           world.constraints.empty() && !held ? world.name : ""};
 }
 

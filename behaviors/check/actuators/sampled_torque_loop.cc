@@ -11,7 +11,7 @@ namespace {
 // Spring torque k δ and √(J k) θ', both in N m so that the map is well scaled; ∫e dt and the
 // integral of the rate's error, each times its gain; of the filters the δ before and both rates,
 // scaled likewise; the observer's momentum times √(k/J).
-constexpr int kStates = 8;
+constexpr int kStates = TorqueLoopMap::kStates;
 using LoopState = Eigen::Matrix<double, kStates, 1>;
 
 class SampleMap {
@@ -29,10 +29,10 @@ class SampleMap {
         rotor_({.spring = actuator.spring, .rotor = actuator.rotor, .viscous = actuator.viscous},
                period) {}
 
-  // The law of hal/actuators/torque_loop.h for a reference of 0; q' is 0, so that both rates are
-  // the same but for their filters.
-  LoopState after(const LoopState& now) {
-    const double error = -now[0];
+  // The law of hal/actuators/torque_loop.h; q' is 0, so that both rates are the same but for their
+  // filters.
+  LoopState after(const LoopState& now, double reference = 0.0) {
+    const double error = reference - now[0];
     const double rate = seen_rate(now, motor_share_, now[5]);
     const double spring_rate = seen_rate(now, spring_share_, now[6]);
     const double outer = gains_.p * error + now[2];
@@ -42,7 +42,8 @@ class SampleMap {
     const double found = cascade ? 0.0 : observer_ * (inertia_ * rate - momentum);
     const bool of_motor = gains_.damps == hal::TorqueLoopGains::Damping::motor;
     const double damped = gains_.damping * (of_motor ? rate : spring_rate);
-    const double torque = cascade ? gains_.velocity_p * slip + now[3] : outer - damped - found;
+    const double torque = cascade ? gains_.velocity_p * slip + now[3]
+                                  : gains_.forward * reference + outer - damped - found;
     rotor_.set_state({now[0] / spring_, now[1] / impedance_});
     rotor_.advance(torque, 0.0);
     const hal::SeriesElasticState& moved = rotor_.state();
@@ -84,16 +85,25 @@ class SampleMap {
 
 }  // namespace
 
+TorqueLoopMap torque_loop_map(const hal::TorqueLoopGains& gains,
+                              const hal::SeriesElasticParameters& actuator, double period,
+                              const hal::RateFilters& filters) {
+  SampleMap map(gains, actuator, period, filters);
+  TorqueLoopMap out;
+  for (int k = 0; k < kStates; ++k) {
+    if (map.has(k)) out.A.col(k) = map.after(LoopState::Unit(k));
+  }
+  out.B = map.after(LoopState::Zero(), 1.0);
+  return out;
+}
+
 double torque_loop_growth(const hal::TorqueLoopGains& gains,
                           const hal::SeriesElasticParameters& actuator, double period,
                           const hal::RateFilters& filters) {
-  SampleMap map(gains, actuator, period, filters);
-  Eigen::Matrix<double, kStates, kStates> whole = decltype(whole)::Zero();
-  for (int k = 0; k < kStates; ++k) {
-    if (map.has(k)) whole.col(k) = map.after(LoopState::Unit(k));
-  }
+  using Square = Eigen::Matrix<double, kStates, kStates>;
+  const Square whole = torque_loop_map(gains, actuator, period, filters).A;
   if (!whole.allFinite()) return HUGE_VAL;
-  return Eigen::EigenSolver<decltype(whole)>(whole, false).eigenvalues().cwiseAbs().maxCoeff();
+  return Eigen::EigenSolver<Square>(whole, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace footfall::behaviors

@@ -23,6 +23,8 @@ struct PhysicsWorld {
   int steps_per_tick = 2;
   double command_delay = 0.0;  // s, from the tick's command to the torque
   bool series_elastic = false;
+  double measurement_delay = 0.0;  // s, from the drives' measurement to the tick
+  double viscous = 0.0;            // N m s/rad, of every rotor
   // Name of a world in which nothing but its contacts bears the robot; empty: not known.
   std::string unaided{};
 };

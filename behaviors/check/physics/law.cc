@@ -2,6 +2,7 @@
 #include "behaviors/check/physics/law.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "behaviors/compiled/control_set.h"
 #include "behaviors/compiled/static_values.h"
@@ -158,6 +159,35 @@ RestSolution PhysicsLaw::rest(const ControlSpec& control, const std::vector<doub
   const tasks::ControllerResult& out = controller_.result();
   for (const int contact : control.contacts) result.forces.push_back(out.force[at(contact)]);
   return result;
+}
+
+// Torque of 1 N beside that of 0 N, then the tension measured of one of its parts after the other.
+// Both are affine.
+std::vector<double> PhysicsLaw::tension_shares(const ControlSpec& control, int internal) {
+  const auto joints = at(model_.joint_count());
+  tasks::ControlSet& set = control_->primary;
+  fill_control_set(behavior_, control, set);
+  std::vector<double> without(joints), asked(joints), measured(joints, 0.0);
+  controller_.compute(*control_, 0, nullptr, without.data());
+  set.internals[at(internal)].reference = 1.0;
+  controller_.compute(*control_, 0, nullptr, asked.data());
+  std::vector<double> unused(joints);
+  const auto tension = [&] {
+    controller_.compute(*control_, 0, measured.data(), unused.data());
+    return controller_.result().internal_measured[at(internal)];
+  };
+  const double none = tension();
+  std::vector<double> shares;
+  double sum = 0.0;
+  for (std::size_t j = 0; j < joints; ++j) {
+    measured[j] = asked[j] - without[j];
+    shares.push_back(tension() - none);
+    measured[j] = 0.0;
+    sum += shares.back();
+  }
+  constexpr double kWhole = 1e-6;
+  if (!(std::abs(sum - 1.0) < kWhole)) return {};
+  return shares;
 }
 
 }  // namespace footfall::behaviors

@@ -48,6 +48,10 @@ class PhysicsLaw {
   // The law with every task at rest at its reference; `internal`: N at each contact, in the order
   // of control.internals.
   RestSolution rest(const ControlSpec& control, const std::vector<double>& internal);
+  // Of an internal force (index into control.internals), by joint: the part of what is measured of
+  // it that the joint's torque makes, when all torques are those that are asked for it. Their sum
+  // is 1. Empty: in this posture no torque makes it.
+  std::vector<double> tension_shares(const ControlSpec& control, int internal);
 
  private:
   void assemble(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);

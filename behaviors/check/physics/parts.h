@@ -36,7 +36,7 @@ void check_ranks(PhysicsContext& context, const ControlSpec& control, core::Mark
 void check_internal_forces(PhysicsContext& context, const ControlSpec& control);
 // References against joint limits, legs' reach and the robot's tilt limit (reach.cc).
 void check_references(PhysicsContext& context);
-// Feedback of internal forces beyond what the loop bears (force_feedback.cc).
+// Feedback of internal forces beyond what the loop bears (check/actuators/force_feedback.cc).
 void check_force_feedback(PhysicsContext& context);
 // References that move without a velocity of their own (feed_forward.cc).
 void check_feed_forward(PhysicsContext& context);

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <numbers>
 #include <vector>
 
 #include "core/index.h"
@@ -111,19 +109,6 @@ double growth(const SampledLoop& loop) {
     A = std::move(squared);
   }
   return std::exp(log_growth);
-}
-
-// The angle grows with t from 0 to n pi, so that the bracket holds the first crossing alone.
-double force_feedback_limit(double bandwidth, double period, int periods) {
-  const double a = bandwidth > 0.0 ? std::exp(-2.0 * std::numbers::pi * bandwidth * period) : 0.0;
-  const auto distance = [a](double t) { return std::polar(1.0, t) - a; };
-  double low = 0.0, high = std::numbers::pi;
-  for (int k = 0; k < 60; ++k) {
-    const double t = 0.5 * (low + high);
-    const double angle = (periods - 1) * t + std::arg(distance(t));
-    (angle < std::numbers::pi ? low : high) = t;
-  }
-  return std::abs(distance(high)) / (1.0 - a);
 }
 
 }  // namespace footfall::behaviors

@@ -28,11 +28,4 @@ struct SampledLoop {
 // period-to-period map. At most 1: it does not grow.
 double growth(const SampledLoop& loop);
 
-// The loop of a measured force: F = F_ref + K (F_ref - y), y the force of `periods` periods before
-// through a first-order low-pass of `bandwidth` (Hz, 0: none), torques held as commanded:
-//   z^n - a z^(n-1) + K (1 - a) = 0,  a = exp(-2 pi B T)
-// The smallest K > 0 from which an error no longer dies out: (1 + a)/(1 - a) for n = 1; else
-// |exp(i t) - a|/(1 - a) at the least t in (0, pi) with (n - 1) t + arg(exp(i t) - a) = pi.
-double force_feedback_limit(double bandwidth, double period, int periods);
-
 }  // namespace footfall::behaviors
