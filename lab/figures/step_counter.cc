@@ -7,8 +7,6 @@ namespace footfall::lab {
 
 StepEvent StepCounter::observe(double time, const bool* contact, const double* height) noexcept {
   StepEvent event;
-  int standing = 0;
-  for (int f = 0; f < feet_; ++f) standing += contact[f] ? 1 : 0;
   for (int f = 0; f < feet_; ++f) {
     Foot& foot = feet_state_[static_cast<std::size_t>(f)];
     foot.landed = false;
@@ -37,15 +35,49 @@ StepEvent StepCounter::observe(double time, const bool* contact, const double* h
         foot.swing_rise = foot.rise;
       }
     }
-    if (foot.pending && contact[f] && standing == 1) {
-      foot.pending = false;
-      ++steps_;
-      worst_clearance_ = std::min(worst_clearance_, foot.swing_rise);
+  }
+  first_ = false;
+  for (int f = 0; f < feet_; ++f) {
+    Foot& foot = feet_state_[static_cast<std::size_t>(f)];
+    if (foot.landed) note_others(foot, contact);
+  }
+  for (int f = 0; f < feet_ && event.foot < 0; ++f) {
+    const Foot& foot = feet_state_[static_cast<std::size_t>(f)];
+    if (foot.pending && contact[f] && took_over(foot, contact)) {
       event = {f, foot.swing_time, foot.swing_rise};
     }
   }
-  first_ = false;
+  if (event.foot >= 0) settle(contact);
   return event;
+}
+
+// Feet that came down with this one, or shortly before it, are no others: they take over with it.
+void StepCounter::note_others(Foot& foot, const bool* contact) const noexcept {
+  for (int g = 0; g < feet_; ++g) {
+    const std::size_t other = static_cast<std::size_t>(g);
+    foot.others[other] = contact[g] && !feet_state_[other].pending;
+  }
+}
+
+bool StepCounter::took_over(const Foot& foot, const bool* contact) const noexcept {
+  int standing = 0;
+  for (int g = 0; g < feet_; ++g) {
+    if (!contact[g]) continue;
+    if (foot.others[static_cast<std::size_t>(g)]) return false;
+    ++standing;
+  }
+  return standing < feet_;  // a landing on all feet is no step until some of them leave
+}
+
+// A step is counted: once for all feet that took over.
+void StepCounter::settle(const bool* contact) noexcept {
+  ++steps_;
+  for (int f = 0; f < feet_; ++f) {
+    Foot& foot = feet_state_[static_cast<std::size_t>(f)];
+    if (!foot.pending || !contact[f]) continue;
+    foot.pending = false;
+    worst_clearance_ = std::min(worst_clearance_, foot.swing_rise);
+  }
 }
 
 }  // namespace footfall::lab

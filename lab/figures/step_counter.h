@@ -1,6 +1,7 @@
 // Counts steps as docs/architecture.md defines them: a foot is without ground contact for at least
-// 60 ms, rises at least 2 cm, and then becomes the foot that stands alone. Fed once a tick, or with
-// the rows of a log.
+// 60 ms, rises at least 2 cm, and then carries the robot without any of the feet that stood when it
+// came down. Feet that take over together, as the two of a trot, make one step. Fed once a tick, or
+// with the rows of a log.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 namespace footfall::lab {
 
 struct StepEvent {
-  int foot = -1;             // contact index of the foot that became the stance foot; -1: no step
+  int foot = -1;             // contact index of a foot that took over; -1: no step
   double flight_time = 0.0;  // s without ground contact
   double clearance = 0.0;    // m, highest above where it left the ground
 };
@@ -36,13 +37,18 @@ class StepCounter {
  private:
   struct Foot {
     bool in_contact = true;
-    bool pending = false;  // came down after a real swing, the other foot still stands
+    bool pending = false;  // came down after a real swing, a foot of `others` still stands
     bool landed = false;
+    std::array<bool, core::kMaxContacts> others{};  // stood when it came down
     double left_at = 0.0;  // s, first tick without contact
     double lift_height = 0.0;
     double rise = 0.0;
     double swing_time = 0.0, swing_rise = 0.0;  // of the last real swing
   };
+  void note_others(Foot& foot, const bool* contact) const noexcept;
+  bool took_over(const Foot& foot, const bool* contact) const noexcept;
+  void settle(const bool* contact) noexcept;
+
   int feet_;
   double period_;
   std::array<Foot, core::kMaxContacts> feet_state_{};

@@ -104,7 +104,7 @@ std::string no_steps_text(std::int64_t marked) {
   return fmt::format(
       "  NO STEPS     the behavior marked {}, but no foot left the ground for {:.0f} ms, rose "
       "{:.0f} cm "
-      "and then carried the robot alone\n",
+      "and then carried the robot without those that stood\n",
       marked, StepCounter::kMinFlight * 1e3, StepCounter::kMinRise * 1e2);
 }
 

@@ -109,7 +109,7 @@ void Wbosc::feed_back(int row, double measured) noexcept {
 void Wbosc::add_null_torque(int nulls, int rows) noexcept {
   const int na = sizes_.na;
   const Block g = {G_.data(), rows};
-  const RankRule rule = {options_.rank_tolerance, options_.absolute_floor};
+  const RankRule rule = {options_.internal_rank_tolerance, options_.absolute_floor};
   Reflectors keep = {null_reflectors_.data(), null_beta_.data(), na, 0};
   const LevelScratch scratch = {y_.data(), work_.data() + 2 * (stride_ + sizes_.nv + rows),
                                 work_.data()};
