@@ -1,7 +1,7 @@
 // What a control tick costs, against a physics step of the same robot standing, in one process:
 // rounds of every part in turn, the lowest round of each counts. The algebra is also compared with
 // Appendix A taken literally (naive); its share of the mass matrix factorisation is counted in.
-// Needs about 15 s. `--profile dual|single`: 20000 ticks and nothing else, for callgrind.
+// Needs about 15 s. `--profile dual|single|tension`: 20000 ticks and nothing else, for callgrind.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ constexpr int kStates = 64;        // recorded, gone through in turn
 constexpr int kPacedTicks = 3000;  // of each stance
 constexpr long kPeriodNs = 666'667;
 
-// Table I's two laws, each for ever.
+// Table I's two laws, each for ever; and the first with its tension fed back.
 constexpr const char* kStances = R"(
 behavior: 1
 robot: hume
@@ -44,6 +44,13 @@ stacks:
       height: {type: com_position, axes: [z], priority: 1, reference: 0.91 m, gains: {kp: 270, ki: 20, kd: 10}}
       attitude: {type: body_orientation, axes: [pitch, roll], priority: 1, reference: 0, gains: {kp: [200, 210], ki: [20, 35], kd: [15, 10]}}
       swing: {type: point_position, point: left_foot, priority: 1, reference: {trajectory: hold}, gains: {kp: [220, 237, 400], ki: [35, 40, 35], kd: [35, 40, 60]}}
+  tension:
+    contacts: [right_foot, left_foot]
+    tasks:
+      height: {type: com_position, axes: [z], priority: 1, reference: 0.91 m, gains: {kp: 270, ki: 20, kd: 10}}
+      attitude: {type: body_orientation, axes: [yaw, pitch, roll], priority: 1, reference: 0, gains: {kp: [100, 200, 210], ki: [0, 20, 35], kd: [0, 15, 10]}}
+      rest: {type: joint_damping, priority: 2, gains: {kd: 2}}
+    internal: {tension: {between: [right_foot, left_foot], reference: 20 N, feedback: 2, integral: 5 1/s}}
 machine:
   safe: limp
   states:
@@ -177,12 +184,12 @@ double percentile(std::vector<double> values, double share) {
 
 int profile(const std::string& name) {
   const Recording recording = record();
-  Stance stance(name, name == "dual" ? recording.dual : recording.single);
+  Stance stance(name, name == "single" ? recording.single : recording.dual);
   for (int i = 0; i < 20000; ++i) stance.loop->tick();
   return 0;
 }
 
-enum { kDual, kSingle, kStep, kFactor, kUpdate, kWbosc2, kWbosc1, kNaive2, kNaive1, kPartCount };
+enum { kDual, kTension, kSingle, kStep, kFactor, kUpdate, kWbosc2, kWbosc1, kNaive2, kNaive1, kPartCount };
 using Parts = std::array<Part, kPartCount>;
 
 // Figures of one stance: `tick`, `wbosc` and `naive` are its places in `parts`.
@@ -205,10 +212,12 @@ nlohmann::ordered_json stance_json(const Parts& parts, std::size_t tick, std::si
       {"torque_difference", difference}};
 }
 
-long allocations_of(engine::ControlLoop& dual, engine::ControlLoop& single) {
+long allocations_of(engine::ControlLoop& dual, engine::ControlLoop& tension,
+                    engine::ControlLoop& single) {
   const AllocationGuard guard;
   for (int i = 0; i < kCalls; ++i) {
     dual.tick();
+    tension.tick();
     single.tick();
   }
   return guard.allocations();
@@ -216,7 +225,8 @@ long allocations_of(engine::ControlLoop& dual, engine::ControlLoop& single) {
 
 int run() {
   const Recording recording = record();
-  Stance dual("dual", recording.dual), single("single", recording.single);
+  Stance dual("dual", recording.dual), tension("tension", recording.dual);
+  Stance single("single", recording.single);
   Algebra dual_algebra(true), single_algebra(false);
   Physics physics(recording.dual);
   const model::RobotDescription robot = load_hume();
@@ -234,6 +244,7 @@ int run() {
   };
   Parts parts;
   parts[kDual].call = [&](int) { dual.loop->tick(); };
+  parts[kTension].call = [&](int) { tension.loop->tick(); };
   parts[kSingle].call = [&](int) { single.loop->tick(); };
   parts[kStep].call = [&](int) { physics.step(); };
   parts[kFactor].call = [&](int) { mj_factorM(physics.model(), physics.data()); };
@@ -249,7 +260,7 @@ int run() {
     for (Part& part : parts) part.round();
   }
 
-  const long allocations = allocations_of(*dual.loop, *single.loop);
+  const long allocations = allocations_of(*dual.loop, *tension.loop, *single.loop);
   std::vector<double> pace = paced(*dual.loop);
   const std::vector<double> more = paced(*single.loop);
   pace.insert(pace.end(), more.begin(), more.end());
@@ -257,6 +268,10 @@ int run() {
   const nlohmann::ordered_json result = {
       {"dual", stance_json(parts, kDual, kWbosc2, kNaive2, dual_algebra.torque_difference)},
       {"single", stance_json(parts, kSingle, kWbosc1, kNaive1, single_algebra.torque_difference)},
+      {"tension",
+       {{"tick_us", rounded(parts[kTension].lowest())},
+        {"over_dual", rounded(parts[kTension].lowest() / parts[kDual].lowest())},
+        {"over_dual_median", rounded(parts[kTension].median() / parts[kDual].median())}}},
       {"mj_step_contacts", rounded(physics.mean_contacts())},
       {"allocations", allocations},
       {"paced_tick_us", rounded(percentile(pace, 0.5))},

@@ -28,7 +28,7 @@ def main():
     finish(f"{len(alike)} limits, worst {100 * worst[True]:.2f} % from simulation; with legs unlike each other "
            f"{100 * worst[False]:.1f} %; {outside} not found; {spans}",
            len(alike) >= LEAST and not outside and max(worst.values()) <= WITHIN,
-           not outside and max(worst.values()) <= WANTED)
+           not outside and worst[True] <= WANTED)
 
 
 if __name__ == "__main__":
