@@ -79,6 +79,10 @@ WorldDescription with_draw(WorldDescription world, const model::Draw& drawn) {
       world.control_model.com_shift[link][k] += shift[k];
     }
   }
+  std::vector<model::TerrainPiece>& boxes = world.control_model.terrain.boxes;
+  for (std::size_t b = 0; b < boxes.size() && b < drawn.terrain.size(); ++b) {
+    boxes[b] = mistaken(boxes[b], drawn.terrain[b]);
+  }
   world.actuators.command_delay += drawn.command_delay.value_or(0.0);
   world.actuators.drawn_springs = drawn.springs;
   world.actuators.drawn_coulomb = drawn.coulomb;

@@ -15,16 +15,10 @@
 #include "model/variation/variation.h"
 #include "sim/world/actuators.h"
 #include "sim/world/by_joint.h"
+#include "sim/world/ground.h"
 #include "sim/world/sensors.h"
 
 namespace footfall::sim {
-
-// A box on the ground plane, axis-parallel.
-struct TerrainBox {
-  std::array<double, 2> at{};    // m, centre in the world's x y
-  std::array<double, 3> size{};  // m, full length, width, height above the plane
-  core::Mark mark;
-};
 
 enum class Integrator { euler, rk4, implicit };
 enum class Solver { newton, cg, pgs };
@@ -73,11 +67,12 @@ struct WorldDescription {
   double friction = 0.9;
   double height_error = 0.0;  // m, largest: the ground's height is drawn anew for every step
   std::vector<TerrainBox> terrain;
-  model::HeightSurface surface;  // nominal CoM height follows this surface
+  TerrainBelief belief = TerrainBelief::exact;  // what control_model.terrain was made by
+  model::HeightSurface surface;                 // nominal CoM height follows this surface
   ActuatorSettings actuators;
   SensorSettings sensors;
   std::uint64_t noise_seed = 0;         // of the sensors' errors and of the ground's height
-  model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
+  model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05; terrain
   std::vector<model::NamedLink> links;  // of its `com` and its constraints
   std::vector<model::BodySprings> constraints;
   ByJoint start_joints;           // rad, beside the robot's posture
