@@ -131,7 +131,7 @@ void MujocoBackend::place_at_posture() {
   mj_resetData(model_, data_);
   const StartOffsets& start = world_.start;
   core::Diagnostics ignored;  // the world was checked
-  const std::vector<double> beside = start_joints(world_, robot_, ignored);
+  const std::vector<double> beside = start_joints(world_.start_joints, robot_, ignored);
   for (std::size_t j = 0; j < qpos_.size(); ++j) {
     data_->qpos[qpos_[j]] =
         robot_.joints[j].posture + beside[j] + (j < start.joints.size() ? start.joints[j] : 0.0);

@@ -200,10 +200,16 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
 }
 
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world, bool held) {
-  return {world.variation.least_friction().value_or(world.friction), world.physics.steps_per_tick,
+  return {world.variation.least_friction().value_or(world.friction),
+          world.physics.steps_per_tick,
           world.actuators.command_delay + world.variation.most_command_delay(),
           world.actuators.model == sim::ActuatorModel::series_elastic,
-          world.constraints.empty() && !held ? world.name : ""};
+          world.constraints.empty() && !held ? world.name : "",
+          world.control_model.terrain,
+          [start = world.start_joints](const model::RobotDescription& robot) {
+            core::Diagnostics ignored;  // told where the world meets the robot
+            return sim::start_joints(start, robot, ignored);
+          }};
 }
 
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,

@@ -48,16 +48,16 @@ std::vector<double> axis_tilts(const WorldDescription& world, const model::Robot
   return by_joint(world.axis_tilts, read_tilt, robot, diagnostics);
 }
 
-std::vector<double> start_joints(const WorldDescription& world,
-                                 const model::RobotDescription& robot, Diagnostics& diagnostics) {
-  return by_joint(world.start_joints, read_turn, robot, diagnostics);
+std::vector<double> start_joints(const ByJoint& given, const model::RobotDescription& robot,
+                                 Diagnostics& diagnostics) {
+  return by_joint(given, read_turn, robot, diagnostics);
 }
 
 void check_actuators(const WorldDescription& world, const model::RobotDescription& robot,
                      Diagnostics& diagnostics) {
   check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
   axis_tilts(world, robot, diagnostics);
-  start_joints(world, robot, diagnostics);
+  start_joints(world.start_joints, robot, diagnostics);
   if (world.actuators.model != ActuatorModel::ideal || !world.variation.draws_actuators()) return;
   // `ideal` on top of a base's elastic actuators takes their draws away, too.
   if (world.actuators.file != world.variation.actuators.file) return;

@@ -107,8 +107,7 @@ void check_supported(const WorldDescription& world, core::Diagnostics& diagnosti
 
 // Angles of a robot's joints beside its posture, in which it starts before anything is drawn;
 // reports joints that it does not have.
-std::vector<double> start_joints(const WorldDescription& world,
-                                 const model::RobotDescription& robot,
+std::vector<double> start_joints(const ByJoint& given, const model::RobotDescription& robot,
                                  core::Diagnostics& diagnostics);
 
 // The tilts of a robot's joints; reports joints that it does not have.
