@@ -78,6 +78,9 @@ class ControlModel {
   const std::array<double, 3>& contact_normal(int contact) const noexcept {
     return normals_[static_cast<std::size_t>(contact)];
   }
+  double contact_radius(int contact) const noexcept {  // m
+    return anchors_[static_cast<std::size_t>(contact)].radius;
+  }
   const Terrain& terrain() const noexcept { return terrain_; }  // as believed
   // Angular velocity of the link that a point is on, rad/s, world axes.
   std::array<double, 3> point_angular_velocity(int index) const noexcept;
@@ -139,9 +142,9 @@ class ControlModel {
   std::vector<Anchor> anchors_;
   Terrain terrain_;
   std::vector<std::array<double, 3>> normals_;  // by contact
-  mutable std::vector<Kinematics3> points_;    // Jacobians of named points are filled on demand
-  mutable std::vector<unsigned char> fresh_;   // which of them are of the state given last
-  mutable std::vector<FrameRotation> frames_;  // on demand too
+  mutable std::vector<Kinematics3> points_;     // Jacobians of named points are filled on demand
+  mutable std::vector<unsigned char> fresh_;    // which of them are of the state given last
+  mutable std::vector<FrameRotation> frames_;   // on demand too
   mutable std::vector<unsigned char> fresh_frame_;
   mutable Kinematics3 angular_;
   mutable bool fresh_angular_ = false;

@@ -36,8 +36,8 @@ GroundAt nearest_of(const TerrainPiece& box, const Vector& point) noexcept {
     out[shallow] = std::copysign(1.0, local[shallow]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    found.normal[i] = box.R_WP[3 * i] * out[0] + box.R_WP[3 * i + 1] * out[1] +
-                      box.R_WP[3 * i + 2] * out[2];
+    found.normal[i] =
+        box.R_WP[3 * i] * out[0] + box.R_WP[3 * i + 1] * out[1] + box.R_WP[3 * i + 2] * out[2];
   }
   return found;
 }

@@ -9,9 +9,9 @@ namespace footfall::model {
 
 // A solid box. Columns of R_WP are the directions of its edges.
 struct TerrainPiece {
-  std::array<double, 3> centre{};                      // m, world
+  std::array<double, 3> centre{};                         // m, world
   std::array<double, 9> R_WP{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
-  std::array<double, 3> half{};                        // m, half of its edges
+  std::array<double, 3> half{};                           // m, half of its edges
 
   bool operator==(const TerrainPiece&) const = default;
 };

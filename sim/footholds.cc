@@ -46,7 +46,7 @@ std::string foothold_name(std::size_t contact, std::size_t piece) {
 // met it, but for the balls; the ground of a ball gets one that only the ball has. Nothing changes
 // between two geoms of the robot: none has these bits in its contype.
 Footholds::Footholds(mjModel_& m, const WorldDescription& world, std::span<const int> balls)
-    : error_(world.height_error), seed_(world.noise_seed), terrain_(world.terrain) {
+    : error_(world.height_error), seed_(world.noise_seed), terrain_(terrain_of(world.terrain)) {
   int used = used_bits(m);
   const int common = free_bit(used);
   for (int g = 0; g < m.ngeom; ++g) {
@@ -58,7 +58,7 @@ Footholds::Footholds(mjModel_& m, const WorldDescription& world, std::span<const
     }
   }
   heights_.push_back(0.0);
-  for (const TerrainBox& box : world.terrain) heights_.push_back(0.5 * box.size[2]);
+  for (const model::TerrainPiece& box : terrain_.boxes) heights_.push_back(box.centre[2]);
   for (std::size_t c = 0; c < balls.size(); ++c) {
     Foothold foothold;
     foothold.ball = balls[c];
@@ -92,19 +92,11 @@ void Footholds::move(mjModel_& model, Foothold& foothold, double height) const n
   }
 }
 
-// Of the plane, and of the terrain below or beside the ball.
+// Wherever its ground may be, which is up to the error above its place.
 bool Footholds::is_clear(const mjModel_& model, const mjData_& data, int ball) const noexcept {
   const double* p = data.geom_xpos + 3 * ball;
   constexpr double kGap = 1e-3;  // m
-  const double margin = model.geom_size[3 * ball] + error_ + kGap;
-  double top = 0.0;
-  for (const TerrainBox& box : terrain_) {
-    if (std::abs(p[0] - box.at[0]) < 0.5 * box.size[0] + margin &&
-        std::abs(p[1] - box.at[1]) < 0.5 * box.size[1] + margin) {
-      top = std::max(top, box.size[2]);
-    }
-  }
-  return p[2] > top + margin;
+  return terrain_.nearest({p[0], p[1], p[2]}).distance > model.geom_size[3 * ball] + error_ + kGap;
 }
 
 void Footholds::update(mjModel_& model, const mjData_& data) noexcept {

@@ -47,7 +47,7 @@ class Footholds {
 
   double error_;
   std::uint64_t seed_;
-  std::vector<TerrainBox> terrain_;
+  model::Terrain terrain_;       // without error
   std::vector<double> heights_;  // m, of the pieces' centres without error
   std::vector<Foothold> footholds_;
   std::int64_t drawn_ = 0;

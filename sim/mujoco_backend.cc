@@ -125,24 +125,26 @@ void MujocoBackend::tilt_axes() {
   mj_setConst(model_, data_);
 }
 
-// Sets the posture of robot and world, beside it what was drawn: upright, the lowest foot point at
-// the start's height above the ground.
+// Sets the posture of robot and world, beside it what was drawn: upright, the start's height
+// above where the first ball rests on the ground.
 void MujocoBackend::place_at_posture() {
   mj_resetData(model_, data_);
   const StartOffsets& start = world_.start;
   core::Diagnostics ignored;  // the world was checked
-  const std::vector<double> beside = start_joints(world_, robot_, ignored);
+  const std::vector<double> beside = start_joints(world_.start_joints, robot_, ignored);
   for (std::size_t j = 0; j < qpos_.size(); ++j) {
     data_->qpos[qpos_[j]] =
         robot_.joints[j].posture + beside[j] + (j < start.joints.size() ? start.joints[j] : 0.0);
   }
   mj_kinematics(model_, data_);
-  double lowest = 1e9;
+  const model::Terrain terrain = terrain_of(world_.terrain);
+  double lift = -1e9;  // m, until the first ball rests on the ground below it
   for (const model::ContactDescription& c : robot_.contacts) {
     const int site = mj_name2id(model_, mjOBJ_SITE, c.site.c_str());
-    lowest = std::min(lowest, data_->site_xpos[3 * site + 2] - c.radius);
+    const double* p = data_->site_xpos + 3 * site;
+    lift = std::max(lift, terrain.rest_height(p[0], p[1], c.radius) - p[2]);
   }
-  if (!robot_.contacts.empty()) data_->qpos[2] -= lowest;
+  if (!robot_.contacts.empty()) data_->qpos[2] += lift;
   data_->qpos[2] += world_.start_height;
   for (std::size_t k = 0; k < 2; ++k) data_->qvel[k] = start.velocity[k];
   for (std::size_t k = 0; k < 3; ++k) data_->qvel[3 + k] = start.rates[k];

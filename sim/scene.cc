@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+
 #include "sim/footholds.h"
 
 namespace footfall::sim {
@@ -49,12 +52,23 @@ std::string plane_xml(const std::string& name, const std::string& attributes) {
       name, attributes);
 }
 
+// The unit quaternion (w x y z) of Rz(yaw) Ry(pitch) Rx(roll).
+std::array<double, 4> quaternion_of(const std::array<double, 3>& turn) {
+  const double cr = std::cos(0.5 * turn[0]), sr = std::sin(0.5 * turn[0]);
+  const double cp = std::cos(0.5 * turn[1]), sp = std::sin(0.5 * turn[1]);
+  const double cy = std::cos(0.5 * turn[2]), sy = std::sin(0.5 * turn[2]);
+  return {cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
+          cr * cp * sy - sr * sp * cy};
+}
+
 std::string box_xml(const std::string& name, const TerrainBox& box, const std::string& attributes) {
+  const model::TerrainPiece piece = piece_of(box);
+  const std::array<double, 4> q = quaternion_of(box.turn);
   return fmt::format(
-      "<geom name=\"{}\" type=\"box\" quat=\"1 0 0 0\" pos=\"{:.17g} {:.17g} {:.17g}\" "
-      "size=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
-      name, box.at[0], box.at[1], 0.5 * box.size[2], 0.5 * box.size[0], 0.5 * box.size[1],
-      0.5 * box.size[2], attributes);
+      "<geom name=\"{}\" type=\"box\" quat=\"{:.17g} {:.17g} {:.17g} {:.17g}\" "
+      "pos=\"{:.17g} {:.17g} {:.17g}\" size=\"{:.17g} {:.17g} {:.17g}\" {}/>\n",
+      name, q[0], q[1], q[2], q[3], piece.centre[0], piece.centre[1], piece.centre[2],
+      piece.half[0], piece.half[1], piece.half[2], attributes);
 }
 
 std::string terrain_xml(const WorldDescription& world) {

@@ -30,7 +30,7 @@ hal::StubSettings stub_settings(const model::RobotDescription& robot,
   settings.period = robot.period_s();
   settings.base = {0.0, 0.0, robot.standing_height};
   core::Diagnostics ignored;  // the world was checked
-  const std::vector<double> beside = sim::start_joints(world, robot, ignored);
+  const std::vector<double> beside = sim::start_joints(world.start_joints, robot, ignored);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const double drawn = j < world.start.joints.size() ? world.start.joints[j] : 0.0;
     settings.start.push_back(robot.joints[j].posture + beside[j] + drawn);

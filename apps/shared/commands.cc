@@ -206,7 +206,12 @@ behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world, bool h
           world.actuators.model == sim::ActuatorModel::series_elastic,
           world.actuators.measurement_delay,
           world.actuators.viscous,
-          world.constraints.empty() && !held ? world.name : ""};
+          world.constraints.empty() && !held ? world.name : "",
+          world.control_model.terrain,
+          [start = world.start_joints](const model::RobotDescription& robot) {
+            core::Diagnostics ignored;  // told where the world meets the robot
+            return sim::start_joints(start, robot, ignored);
+          }};
 }
 
 void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,

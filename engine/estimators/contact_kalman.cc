@@ -28,10 +28,7 @@ class ContactKalman final : public Estimator {
  public:
   ContactKalman(const behaviors::EstimatorSpec& spec, const model::RobotDescription& robot,
                 const model::ControlModel& model)
-      : measured_(spec, robot, model), gravity_(model.gravity()) {
-    const int count = std::min(Feet, static_cast<int>(robot.contacts.size()));
-    for (int c = 0; c < count; ++c) radius_[at(c)] = robot.contacts[at(c)].radius;
-  }
+      : measured_(spec, robot, model), gravity_(model.gravity()) {}
   bool estimate(const EstimatorInput& input, Estimate& estimate) noexcept override;
   bool covariance(ErrorCovariance& covariance) const noexcept override;
   void take_over(const Estimator& old, const Estimate& last) noexcept override;
@@ -51,7 +48,7 @@ class ContactKalman final : public Estimator {
 
   void start(const EstimatorInput& input, const Estimate& measured) noexcept;
   void spread(Parameters p) noexcept;
-  void follow_feet(Parameters p) noexcept;
+  void follow_feet(const model::ControlModel& model, Parameters p) noexcept;
   double correct(Parameters p) noexcept;
   void write(Estimate& estimate) const noexcept;
   void place_deviation(EstimateQuality& quality) const noexcept;
@@ -59,12 +56,25 @@ class ContactKalman final : public Estimator {
 
   Measured measured_;
   double gravity_;
-  std::array<double, Feet> radius_{};  // m
   Memory memory_;
 };
 
+// What the believed ground lifts a foot's ball above its place on the plane, m, with the base's
+// origin above the world's. Before the first estimate the model is anywhere: its normal is not
+// where the foot will be.
+double terrain_below(const model::ControlModel& model, int contact, const Matrix3d& R) noexcept {
+  const Matrix3d R_BW = matrix_of(model.R_WB()).transpose();
+  const double radius = model.contact_radius(contact);
+  const Vector3d n = vector_of(model.contact_normal(contact));
+  const Vector3d ball = vector_of(model.point_position(contact)) + radius * n;
+  const Vector3d place = R * (R_BW * (ball - vector_of(model.state().p_WB)));
+  const double level = (R * (R_BW * (radius * (Vector3d::UnitZ() - n))))[2];
+  return model.terrain().rest_height(place[0], place[1], radius) - radius - level;
+}
+
 // Level by the first measured force; the base's origin above the world's, the touching feet (or
-// else all) at height 0. What the base's acceleration makes wrong, the filter corrects by its feet.
+// else all) on the believed ground. What the base's acceleration makes wrong, the filter corrects
+// by its feet.
 template <int Feet>
 void ContactKalman<Feet>::start(const EstimatorInput& input, const Estimate& measured) noexcept {
   const Vector3d rate = measured_.gyro();
@@ -76,6 +86,7 @@ void ContactKalman<Feet>::start(const EstimatorInput& input, const Estimate& mea
   for (int c = 0; c < input.model.contact_count(); ++c) {
     if (touches && !measured.contact[at(c)]) continue;
     height -= (R * foot_kinematics(input.model, c, measured.state).contact)[2];
+    height += terrain_below(input.model, c, R);
     ++count;
   }
   const Vector3d p(0.0, 0.0, height / std::max(count, 1));
@@ -99,9 +110,9 @@ void ContactKalman<Feet>::spread(Parameters p) noexcept {
 }
 
 // Feet that have become anchors are taken in where they are, others let go; those that stay roll:
-// a ball's contact point moves with its centre, at w x r.
+// a ball's contact point moves with its centre, at w x r n on ground with the normal n.
 template <int Feet>
-void ContactKalman<Feet>::follow_feet(Parameters p) noexcept {
+void ContactKalman<Feet>::follow_feet(const model::ControlModel& model, Parameters p) noexcept {
   Filter& f = memory_.filter;
   std::array<const Anchor*, Feet> held{};
   for (const Anchor& a : measured_.anchors()) {
@@ -114,10 +125,15 @@ void ContactKalman<Feet>::follow_feet(Parameters p) noexcept {
     } else if (!f.has_foot(i)) {
       memory_.origin += f.anchor();
       f.add_foot(i, h(*anchor), p[kalman::foot_noise]);
-      if (p[kalman::ground_noise] > 0.0) f.correct_height(i, 0.0, p[kalman::ground_noise]);
+      if (p[kalman::ground_noise] > 0.0) {
+        const std::array<double, 3>& point = model.point_position(i);
+        f.correct_height(i, model.terrain().rest_height(point[0], point[1], 0.0),
+                         p[kalman::ground_noise]);
+      }
     } else {
       const Vector3d spin = f.R() * anchor->foot.spin;
-      f.move_foot(i, measured_.period() * radius_[at(i)] * Vector3d(spin[1], -spin[0], 0.0));
+      const Vector3d n = vector_of(model.contact_normal(i));
+      f.move_foot(i, measured_.period() * model.contact_radius(i) * spin.cross(n));
     }
   }
 }
@@ -154,7 +170,7 @@ bool ContactKalman<Feet>::estimate(const EstimatorInput& input, Estimate& estima
   } else {
     if (!m.spread) spread(p);
     m.filter.propagate(measured_.gyro(), measured_.accelerometer(), gravity_, dt);
-    follow_feet(p);
+    follow_feet(input.model, p);
     if (m.ticks % 2 == 0) {
       m.filter.propagate_covariance({.gyro = p[kalman::gyro_noise],
                                      .accelerometer = p[kalman::accelerometer_noise],

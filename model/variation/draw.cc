@@ -28,6 +28,7 @@ enum class Stream : std::uint32_t {
   push,
   spring,
   coulomb,
+  terrain,
 };
 
 class Source {
@@ -104,9 +105,10 @@ bool Variation::draws_actuators() const { return is_drawn(spring) || is_drawn(co
 
 bool Variation::depends_on_seed() const {
   const auto varies = [](const Spread& spread) { return spread.least() < spread.most(); };
-  return noise || varies(velocity) || varies(joints) || varies(rates) || varies(friction) ||
-         varies(mass) || varies(command_delay) || varies(spring) || varies(coulomb) ||
-         push.impulse > 0.0 ||
+  const bool believes = terrain.boxes > 0 && (terrain.tilt > 0.0 || terrain.height > 0.0);
+  return noise || believes || varies(velocity) || varies(joints) || varies(rates) ||
+         varies(friction) || varies(mass) || varies(command_delay) || varies(spring) ||
+         varies(coulomb) || push.impulse > 0.0 ||
          std::ranges::any_of(com, [&](const auto& link) { return varies(link.second); });
 }
 
@@ -123,6 +125,23 @@ void draw_actuators(const Variation& v, int joints, std::uint64_t seed, Draw& ou
     for (int j = 0; j < joints; ++j) out.coulomb.push_back(1.0 + source.of(v.coulomb));
     out.values.emplace_back("actuators.coulomb", out.coulomb);
   }
+}
+
+void draw_terrain(const TerrainError& error, std::uint64_t seed, Draw& out) {
+  if (!(error.tilt > 0.0) && !(error.height > 0.0)) return;
+  Source source(seed, Stream::terrain);
+  std::vector<double> tilts, heights;
+  for (int b = 0; b < error.boxes; ++b) {
+    DrawnTerrain box;
+    box.tilt = source.pair_of({Spread::Kind::ring, error.tilt});
+    box.height = source.of({Spread::Kind::sign, error.height});
+    tilts.insert(tilts.end(), box.tilt.begin(), box.tilt.end());
+    heights.push_back(box.height);
+    out.terrain.push_back(box);
+  }
+  if (error.boxes == 0) return;
+  if (error.tilt > 0.0) out.values.emplace_back("terrain.tilt_rad", std::move(tilts));
+  if (error.height > 0.0) out.values.emplace_back("terrain.height_m", std::move(heights));
 }
 
 void draw_control_model(const Variation& v, const std::vector<std::string>& links,
@@ -194,6 +213,7 @@ Draw draw(const Variation& v, int joints, const std::vector<std::string>& links,
     tell("push.time_s", {push.time});
     tell("push.direction_rad", {push.direction});
   }
+  draw_terrain(v.terrain, seed, out);
   return out;
 }
 

@@ -254,6 +254,7 @@ Variation read_variation(const YamlNode& node, const Variation& base, Diagnostic
   if (Reader::is_off(node)) {
     out = {};
     out.noise = base.noise;
+    out.terrain = base.terrain;
     return out;
   }
   if (!expect_map(node, "a map of what a seed draws, or off", diagnostics)) return out;

@@ -51,6 +51,14 @@ NamedLink named_link(const core::YamlEntry& entry, const core::Diagnostics& diag
 void check_links(const std::vector<NamedLink>& links, const std::vector<std::string>& bodies,
                  core::Diagnostics& diagnostics);
 
+// How wrong the belief of the terrain is (`terrain_belief` of a world, no key here): of each box a
+// tilt in a drawn direction and a height of a drawn sign.
+struct TerrainError {
+  int boxes = 0;        // that the belief has
+  double tilt = 0.0;    // rad
+  double height = 0.0;  // m
+};
+
 struct Variation {
   Spread velocity;  // m/s, of the base at the start, x and y each
   Spread joints;    // rad, each joint's angle at the start, from its posture
@@ -64,6 +72,7 @@ struct Variation {
   Spread coulomb;                     // relative change of each actuator's Coulomb friction
   NamedLink actuators;                // where these two stand
   PushSpread push;
+  TerrainError terrain;
   bool noise = false;  // the world's sensors or its ground have random errors; no key here
 
   // The least friction that can be drawn; nullopt: it is not drawn.
@@ -97,6 +106,12 @@ struct DrawnPush {
   double duration = 0.0;   // s
 };
 
+// Error of one box of the believed terrain.
+struct DrawnTerrain {
+  std::array<double, 2> tilt{};  // rad, components of the rotation vector along x and y
+  double height = 0.0;           // m
+};
+
 // What one seed drew. Empty or nullopt: not drawn.
 struct Draw {
   std::uint64_t seed = 0;            // that drew
@@ -111,6 +126,7 @@ struct Draw {
   std::vector<double> springs;                       // factor, by joint
   std::vector<double> coulomb;                       // factor, by joint
   std::optional<DrawnPush> push;
+  std::vector<DrawnTerrain> terrain;  // by box
   // What was drawn, by name with its unit (`start.velocity_mps`), for summaries and logs.
   std::vector<std::pair<std::string, std::vector<double>>> values;
 };

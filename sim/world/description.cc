@@ -48,16 +48,16 @@ std::vector<double> axis_tilts(const WorldDescription& world, const model::Robot
   return by_joint(world.axis_tilts, read_tilt, robot, diagnostics);
 }
 
-std::vector<double> start_joints(const WorldDescription& world,
-                                 const model::RobotDescription& robot, Diagnostics& diagnostics) {
-  return by_joint(world.start_joints, read_turn, robot, diagnostics);
+std::vector<double> start_joints(const ByJoint& given, const model::RobotDescription& robot,
+                                 Diagnostics& diagnostics) {
+  return by_joint(given, read_turn, robot, diagnostics);
 }
 
 void check_actuators(const WorldDescription& world, const model::RobotDescription& robot,
                      Diagnostics& diagnostics) {
   check_actuators(world.actuators, robot, world.physics.steps_per_tick, diagnostics);
   axis_tilts(world, robot, diagnostics);
-  start_joints(world, robot, diagnostics);
+  start_joints(world.start_joints, robot, diagnostics);
   if (world.actuators.model != ActuatorModel::ideal || !world.variation.draws_actuators()) return;
   // `ideal` on top of a base's elastic actuators takes their draws away, too.
   if (world.actuators.file != world.variation.actuators.file) return;
@@ -78,6 +78,10 @@ WorldDescription with_draw(WorldDescription world, const model::Draw& drawn) {
     for (std::size_t k = 0; k < shift.size(); ++k) {
       world.control_model.com_shift[link][k] += shift[k];
     }
+  }
+  std::vector<model::TerrainPiece>& boxes = world.control_model.terrain.boxes;
+  for (std::size_t b = 0; b < boxes.size() && b < drawn.terrain.size(); ++b) {
+    boxes[b] = mistaken(boxes[b], drawn.terrain[b]);
   }
   world.actuators.command_delay += drawn.command_delay.value_or(0.0);
   world.actuators.drawn_springs = drawn.springs;

@@ -15,16 +15,10 @@
 #include "model/variation/variation.h"
 #include "sim/world/actuators.h"
 #include "sim/world/by_joint.h"
+#include "sim/world/ground.h"
 #include "sim/world/sensors.h"
 
 namespace footfall::sim {
-
-// A box on the ground plane, axis-parallel.
-struct TerrainBox {
-  std::array<double, 2> at{};    // m, centre in the world's x y
-  std::array<double, 3> size{};  // m, full length, width, height above the plane
-  core::Mark mark;
-};
 
 enum class Integrator { euler, rk4, implicit };
 enum class Solver { newton, cg, pgs };
@@ -73,11 +67,12 @@ struct WorldDescription {
   double friction = 0.9;
   double height_error = 0.0;  // m, largest: the ground's height is drawn anew for every step
   std::vector<TerrainBox> terrain;
-  model::HeightSurface surface;  // nominal CoM height follows this surface
+  TerrainBelief belief = TerrainBelief::exact;  // what control_model.terrain was made by
+  model::HeightSurface surface;                 // nominal CoM height follows this surface
   ActuatorSettings actuators;
   SensorSettings sensors;
   std::uint64_t noise_seed = 0;         // of the sensors' errors and of the ground's height
-  model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05
+  model::ModelDeviation control_model;  // model errors: `mass: "+5 %"` is mass_scale 1.05; terrain
   std::vector<model::NamedLink> links;  // of its `com` and its constraints
   std::vector<model::BodySprings> constraints;
   ByJoint start_joints;           // rad, beside the robot's posture
@@ -112,8 +107,7 @@ void check_supported(const WorldDescription& world, core::Diagnostics& diagnosti
 
 // Angles of a robot's joints beside its posture, in which it starts before anything is drawn;
 // reports joints that it does not have.
-std::vector<double> start_joints(const WorldDescription& world,
-                                 const model::RobotDescription& robot,
+std::vector<double> start_joints(const ByJoint& given, const model::RobotDescription& robot,
                                  core::Diagnostics& diagnostics);
 
 // The tilts of a robot's joints; reports joints that it does not have.

@@ -9,6 +9,11 @@ namespace {
 
 using namespace core;  // constructors of the tables
 
+constexpr WordSpec kTerrainBeliefRows[] = {
+    {"exact", "as it is"},
+    {"flat", "level ground, the plane z = 0"},
+};
+
 constexpr KeySpec kWorldRows[] = {
     key("world", integer(1, 1), "the version of world files; the first key").required(),
     key("base", text_of("the path of a world file"),
@@ -18,6 +23,10 @@ constexpr KeySpec kWorldRows[] = {
     key("name", name_of("a world"), "its name in logs and reports").otherwise("the file's name"),
     key("doc", text_of("a text"), "its purpose, in one line"),
     key("ground", map_of(kGroundKeys), "the ground"),
+    key("terrain_belief", choice(kTerrainBeliefRows), map_of(kBeliefKeys),
+        "what control model, estimator and checks take the terrain for: contact points and normals "
+        "are those of the believed one")
+        .otherwise("exact"),
     key("surface", map_of(kSurfaceKeys), "the ground height that the CoM follows"),
     key("actuators", map_of(kActuatorsKeys), "dynamics between command and joint torque"),
     key("sensors", map_of(kWorldSensorsKeys), "sensor imperfections"),
@@ -53,8 +62,32 @@ constexpr KeySpec kTerrainRows[] = {
 };
 
 constexpr KeySpec kBoxRows[] = {
-    key("at", by_axis(quantity(kLength)), "its centre, x and y in the world").required(),
-    key("size", by_axis(quantity(kLength)), "its edges along x, y, z").required(),
+    key("at", by_axis(quantity(kLength)), "centre of its top face, x and y in the world")
+        .required(),
+    key("size", by_axis(quantity(kLength)), "its edges along x, y, z, before it is turned")
+        .required(),
+    key("z", quantity(kLength, "a height"), "height of the centre of its top face")
+        .otherwise("its edge along z: it stands on the plane"),
+    key("roll", quantity(kNone, "an angle"),
+        "turns it about the centre of its top face: first roll about x, then `pitch` about y, then "
+        "`yaw` about z of the world")
+        .otherwise("0 rad"),
+    key("pitch", quantity(kNone, "an angle"), "likewise: positive, the top face falls along x")
+        .otherwise("0 rad"),
+    key("yaw", quantity(kNone, "an angle"), "likewise").otherwise("0 rad"),
+};
+
+constexpr KeySpec kBeliefRows[] = {
+    key("error", map_of(kBeliefErrorKeys), "as it is, but for an error of each box").required(),
+};
+
+constexpr KeySpec kBeliefErrorRows[] = {
+    key("tilt", quantity(kNone, "an angle"),
+        "by which each box is turned about the centre of its top face, about a horizontal axis "
+        "whose direction a seed draws")
+        .otherwise("0 rad"),
+    key("height", quantity(kLength), "by which each box is higher or lower; a seed draws the sign")
+        .otherwise("0 m"),
 };
 
 constexpr KeySpec kSurfaceRows[] = {
@@ -239,6 +272,10 @@ constinit const core::KeyTable kTerrainKeys = {
     .id = "terrain", .doc = "A piece of terrain.", .keys = kTerrainRows};
 constinit const core::KeyTable kBoxKeys = {
     .id = "box", .doc = "A box on the ground.", .keys = kBoxRows};
+constinit const core::KeyTable kBeliefKeys = {
+    .id = "terrain_belief", .doc = "The terrain as it is believed.", .keys = kBeliefRows};
+constinit const core::KeyTable kBeliefErrorKeys = {
+    .id = "terrain_error", .doc = "How wrong the belief is.", .keys = kBeliefErrorRows};
 constinit const core::KeyTable kSurfaceKeys = {
     .id = "surface", .doc = "The ground height that the CoM follows.", .keys = kSurfaceRows};
 constinit const core::KeyTable kRampKeys = {
@@ -273,6 +310,7 @@ constinit const core::KeyTable kStandKeys = {
         "What holds the robot on the backend `stub`, which has no physics: each joint is an "
         "inertia on a spring to its start.",
     .keys = kStandRows};
+constinit const std::span<const core::WordSpec> kTerrainBeliefs = kTerrainBeliefRows;
 constinit const std::span<const core::WordSpec> kActuatorModels = kActuatorModelRows;
 constinit const std::span<const core::WordSpec> kIntegrators = kIntegratorRows;
 constinit const std::span<const core::WordSpec> kSolvers = kSolverRows;

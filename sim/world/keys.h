@@ -10,6 +10,8 @@ extern const core::KeyTable kWorldKeys;  // the root of the file
 extern const core::KeyTable kGroundKeys;
 extern const core::KeyTable kTerrainKeys;
 extern const core::KeyTable kBoxKeys;
+extern const core::KeyTable kBeliefKeys;
+extern const core::KeyTable kBeliefErrorKeys;
 extern const core::KeyTable kSurfaceKeys;
 extern const core::KeyTable kRampKeys;
 extern const core::KeyTable kActuatorsKeys;
@@ -24,6 +26,7 @@ extern const core::KeyTable kControlModelKeys;
 extern const core::KeyTable kPhysicsKeys;
 extern const core::KeyTable kStartKeys;
 extern const core::KeyTable kStandKeys;
+extern const std::span<const core::WordSpec> kTerrainBeliefs;  // in the order of TerrainBelief
 extern const std::span<const core::WordSpec> kActuatorModels;  // in the order of ActuatorModel
 extern const std::span<const core::WordSpec> kIntegrators;     // in the order of Integrator
 extern const std::span<const core::WordSpec> kSolvers;         // in the order of Solver

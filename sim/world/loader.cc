@@ -35,7 +35,7 @@ class WorldLoader {
     if (!core::check_kind(root, "world", 1, diagnostics_)) return std::move(world_);
     core::check_keys(root, kWorldKeys, diagnostics_);
     read_head(root);
-    if (const YamlNode* node = root.find("ground")) read_ground(*node);
+    read_terrain(root);
     refuse_two_frictions(root);
     if (const YamlNode* node = root.find("surface")) read_surface(*node);
     if (const YamlNode* node = root.find("actuators")) {
@@ -79,28 +79,19 @@ class WorldLoader {
     out = core::read_bounded(*node, dimension, minimum, maximum, diagnostics_, what).value_or(out);
   }
 
-  void read_ground(const YamlNode& node) {
-    if (!core::expect_map(node, "{friction: NUMBER, height_error: LENGTH, terrain: [...]}",
-                          diagnostics_))
-      return;
-    core::check_keys(node, kGroundKeys, diagnostics_);
-    constexpr double kLargestFriction = 10.0;
-    read_bounded(node, "friction", core::kNone, 0.0, kLargestFriction, world_.friction);
-    constexpr double kLargestError = 0.02;  // m; a foot must swing clear of it
-    read_bounded(node, "height_error", core::kLength, 0.0, kLargestError, world_.height_error);
-    const YamlNode* const terrain = node.find("terrain");
-    if (terrain == nullptr ||
-        !core::expect_sequence(*terrain, "a list of terrain pieces", diagnostics_)) {
-      return;
+  void read_terrain(const YamlNode& root) {
+    GroundSettings ground;
+    if (const YamlNode* node = root.find("ground")) read_ground(*node, ground, diagnostics_);
+    world_.friction = ground.friction;
+    world_.height_error = ground.height_error;
+    world_.terrain = std::move(ground.terrain);
+    model::TerrainError& error = world_.variation.terrain;
+    if (const YamlNode* node = root.find("terrain_belief")) {
+      read_belief(*node, world_.belief, error, diagnostics_);
     }
-    for (const YamlNode& piece : terrain->items) {
-      if (!core::expect_map(piece, "a terrain piece: {box: {at: [X, Y], size: [X, Y, Z]}}",
-                            diagnostics_)) {
-        continue;
-      }
-      core::check_keys(piece, kTerrainKeys, diagnostics_);
-      if (const YamlNode* box = core::require_key(piece, "box", diagnostics_)) read_box(*box);
-    }
+    if (world_.belief == TerrainBelief::flat) return;
+    world_.control_model.terrain = terrain_of(world_.terrain);
+    error.boxes = static_cast<int>(world_.terrain.size());
   }
 
   // Of two files the one on top decides (model::prepare_variation); in one file nobody could tell.
@@ -113,26 +104,6 @@ class WorldLoader {
     diagnostics_.error(drawn.mark, "misplaced-key",
                        "'variation: {friction}' beside 'ground: {friction}': the draw would take "
                        "the place of the value; only one is allowed");
-  }
-
-  void read_box(const YamlNode& node) {
-    if (!core::expect_map(node, "a box: {at: [X, Y], size: [X, Y, Z]}", diagnostics_)) return;
-    core::check_keys(node, kBoxKeys, diagnostics_);
-    TerrainBox box;
-    box.mark = node.mark;
-    if (const YamlNode* at = core::require_key(node, "at", diagnostics_)) {
-      const auto values = core::read_vector(*at, core::kLength, {"x", "y"}, diagnostics_);
-      if (values) std::copy(values->begin(), values->end(), box.at.begin());
-    }
-    if (const YamlNode* size = core::require_key(node, "size", diagnostics_)) {
-      const auto values = core::read_vector3(*size, core::kLength, diagnostics_);
-      box.size = values.value_or(box.size);
-      const auto good = [](double length) { return length > 0.0; };
-      if (values && !std::all_of(values->begin(), values->end(), good)) {
-        diagnostics_.error(size->mark, "out-of-range", "expected lengths above zero for a box");
-      }
-    }
-    world_.terrain.push_back(box);
   }
 
   void read_surface(const YamlNode& node) {

@@ -16,6 +16,12 @@
 namespace footfall::behaviors {
 namespace {
 
+model::ModelDeviation deviation_of(const PhysicsWorld& world) {
+  model::ModelDeviation deviation;
+  deviation.terrain = world.terrain;
+  return deviation;
+}
+
 // Maximum number of configurations evaluated; parallel regions can multiply beyond reasonable time.
 constexpr std::size_t kMaxJudged = 1000;
 
@@ -95,9 +101,9 @@ void check_physics(const Behavior& behavior, core::Diagnostics& diagnostics,
                    const PhysicsWorld& world) {
   if (!behavior.has_robot) return;
   if (!model::check_model(behavior.robot, diagnostics)) return;
-  model::ControlModel model(behavior.robot);
+  model::ControlModel model(behavior.robot, deviation_of(world));
   PhysicsLaw law(behavior, model);
-  const std::vector<model::State> postures = physics_postures(behavior.robot);
+  const std::vector<model::State> postures = physics_postures(behavior.robot, model, world);
   PhysicsFindings findings;
   PhysicsContext context = {behavior, model, law, postures, findings, world};
   if (!check_configurations(context)) {
@@ -132,9 +138,9 @@ struct EditedValues::Impl {
   Impl(const Behavior& of, const PhysicsWorld& in)
       : behavior(of),
         world(in),
-        model(behavior.robot),
+        model(behavior.robot, deviation_of(world)),
         law(behavior, model),
-        postures(physics_postures(behavior.robot)) {
+        postures(physics_postures(behavior.robot, model, world)) {
     const auto weighted = [](const AxisSpec& axis) { return axis.weight >= 0; };
     all = !behavior.internals.empty() || std::ranges::any_of(behavior.axes, weighted);
     const auto computed = [](const AxisSpec& axis) {

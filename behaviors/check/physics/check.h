@@ -13,6 +13,7 @@
 
 #include "behaviors/compiled/behavior.h"
 #include "core/diagnostics/diagnostics.h"
+#include "model/terrain.h"
 
 namespace footfall::behaviors {
 
@@ -27,9 +28,13 @@ struct PhysicsWorld {
   double viscous = 0.0;            // N m s/rad, of every rotor
   // Name of a world in which nothing but its contacts bears the robot; empty: not known.
   std::string unaided{};
+  model::Terrain terrain{};  // as the controller believes it
+  // By joint: how the world's start differs from the robot's posture, rad; none: not at all.
+  std::function<std::vector<double>(const model::RobotDescription&)> start_joints{};
 };
 
-// Evaluated at the nominal posture of the robot file and at kSeededPostures around it (postures.h):
+// Evaluated at the posture in which the world starts the robot (the robot file's, unless the world
+// says otherwise) and at kSeededPostures around it (postures.h):
 // an error if a configuration is deficient in all of them, a warning if in some. No effect for a
 // behavior without a robot. Throws std::runtime_error with one sentence if the robot's model cannot
 // be compiled.

@@ -2,9 +2,9 @@
 //
 // The robot is at rest: every task at its reference, no feedback. The law's contact forces are
 // those of eq. (30) under its torques ([Kim16] Appendix A), including the internal forces of eqs.
-// (39)-(44). On level ground a foot slips if |f_xy| > mu f_z, and pulls if f_z < 0;
-// mu is the lesser of the robot file's for the foot and, in `run`, scenarios and sweeps, the
-// world's.
+// (39)-(44). With f_n along the normal of the believed ground a foot slips if |f - f_n n| > mu f_n,
+// and pulls if f_n < 0; mu is the lesser of the robot file's for the foot and, in `run`, scenarios
+// and sweeps, the world's.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,13 @@ class ForceCheck {
     int judged = 0;
     for (const model::State& posture : context_.postures) {
       context_.model.update(posture);
-      if (overload(none)) continue;  // the robot cannot stand in this posture at all
+      if (overload(none)) {  // the robot cannot stand in this posture by itself
+        if (&posture == context_.postures.data() && !context_.world.terrain.boxes.empty()) {
+          ++judged;
+          judge_hold(all);
+        }
+        continue;
+      }
       ++judged;
       for (int k = 0; k < control_.internals.count; ++k) judge(k, all);
     }
@@ -71,13 +77,28 @@ class ForceCheck {
       const auto& contact =
           context_.behavior.robot.contacts[static_cast<std::size_t>(control_.contacts[i])];
       const auto& f = solution.forces[i];
-      const double tangential = std::hypot(f[0], f[1]);
-      const double excess = tangential - friction(contact) * f[2];
+      const auto& n = context_.model.contact_normal(control_.contacts[i]);
+      const double normal = f[0] * n[0] + f[1] * n[1] + f[2] * n[2];
+      const double tangential =
+          std::hypot(f[0] - normal * n[0], f[1] - normal * n[1], f[2] - normal * n[2]);
+      const double excess = tangential - friction(contact) * normal;
       if (excess <= worst_excess) continue;
       worst_excess = excess;
-      worst = {control_.contacts[i], f[2], tangential};
+      worst = {control_.contacts[i], normal, tangential};
     }
     return worst;
+  }
+
+  // Where feet stand on slopes too steep for them, internal forces have to hold them: those of the
+  // law, at the start of a world with such terrain.
+  void judge_hold(const std::vector<double>& all) {
+    const auto found = overload(all);
+    if (!found) return;
+    report(0, *found, Severity::error,
+           fmt::format("with internal force '{}' of {:g} N at each foot the robot cannot stand "
+                       "where the world starts it",
+                       name(0), all[0]),
+           {});
   }
 
   // An internal force is the cause if the law leaves the cone with it and not without it.
@@ -88,7 +109,7 @@ class ForceCheck {
     std::vector<double> with = without;
     with[static_cast<std::size_t>(k)] = all[static_cast<std::size_t>(k)];
     if (const auto found = overload(with)) {
-      report(k, *found, Severity::error, with[static_cast<std::size_t>(k)], {});
+      report(k, *found, Severity::error, leaves_cone(k, with[static_cast<std::size_t>(k)], {}), {});
       return;
     }
     for (const int parameter : dependence_of(context_.behavior, spec(k).value).parameters) {
@@ -109,19 +130,29 @@ class ForceCheck {
       if (!value) continue;
       internal[static_cast<std::size_t>(k)] = spec(k).scale * *value;
       if (const auto found = overload(internal)) {
-        report(k, *found, Severity::warning, internal[static_cast<std::size_t>(k)],
-               fmt::format(" at the end of the range of '{}'", info.name));
+        const std::string where = fmt::format(" at the end of the range of '{}'", info.name);
+        report(k, *found, Severity::warning,
+               leaves_cone(k, internal[static_cast<std::size_t>(k)], where), where);
         return;
       }
     }
   }
 
-  void report(int k, const Overload& found, Severity severity, double force,
-              const std::string& where) {
+  const std::string& name(int k) const {
+    return context_.behavior.internal_instances[static_cast<std::size_t>(spec(k).instance)];
+  }
+
+  std::string leaves_cone(int k, double force, const std::string& where) const {
+    return fmt::format(
+        "internal force '{}' of {:g} N at each foot leaves the friction cone{}: standing still",
+        name(k), force, where);
+  }
+
+  void report(int k, const Overload& found, Severity severity, const std::string& what,
+              const std::string& subject) {
     const Behavior& b = context_.behavior;
     const auto& contact = b.robot.contacts[static_cast<std::size_t>(found.contact)];
-    const std::string& name = b.internal_instances[static_cast<std::size_t>(spec(k).instance)];
-    const std::string what =
+    const std::string slips =
         found.normal <= 0.0
             ? fmt::format("{} would pull on the ground", contact.name)
             : fmt::format(
@@ -129,10 +160,8 @@ class ForceCheck {
                   contact.name, found.tangential, friction(contact), found.normal,
                   friction(contact) * found.normal,
                   friction(contact) < contact.friction ? " (friction of the world)" : "");
-    context_.findings.add(severity, spec(k).mark, "friction-cone", where,
-                          fmt::format("internal force '{}' of {:g} N at each foot leaves the "
-                                      "friction cone{}: standing still, {}",
-                                      name, force, where, what));
+    context_.findings.add(severity, spec(k).mark, "friction-cone", subject,
+                          fmt::format("{}, {}", what, slips));
   }
 
   PhysicsContext& context_;

@@ -30,6 +30,7 @@ struct RowRanks {
 struct RestSolution {
   std::vector<double> tau;                    // N m, by joint, before limits
   std::vector<std::array<double, 3>> forces;  // N, ground on robot, world, by contact of the law
+  std::vector<double> internal;               // N at each contact, references in force
 };
 
 class PhysicsLaw {
@@ -46,7 +47,7 @@ class PhysicsLaw {
   // the orthogonal projector onto the remaining joint accelerations).
   std::vector<double> freedom(const std::vector<int>& contacts, const std::vector<TaskRow>& rows);
   // The law with every task at rest at its reference; `internal`: N at each contact, in the order
-  // of control.internals.
+  // of control.internals; NaN: by statics, of a force that has its reference from there.
   RestSolution rest(const ControlSpec& control, const std::vector<double>& internal);
   // Of an internal force (index into control.internals), by joint: the part of what is measured of
   // it that the joint's torque makes, when all torques are those that are asked for it. Their sum

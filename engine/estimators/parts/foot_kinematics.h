@@ -8,7 +8,7 @@
 namespace footfall::engine {
 
 // In base axes, relative to the base's origin. The contact point is the material point of the foot
-// that touches level ground: its centre less the radius along world z.
+// that touches the believed ground: its centre less the radius along the ground's normal.
 struct FootKinematics {
   Vector3d contact = Vector3d::Zero();   // m, of the contact point
   Vector3d velocity = Vector3d::Zero();  // m/s, J_leg q̇: of that material point, joints alone

@@ -17,7 +17,9 @@ namespace {
 using Vector = std::array<double, 3>;
 
 // 1 m x 0.4 m x 0.2 m, its lower face on the plane.
-model::TerrainPiece upright() { return {{2.0, 0.0, 0.1}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5, 0.2, 0.1}}; }
+model::TerrainPiece upright() {
+  return {{2.0, 0.0, 0.1}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5, 0.2, 0.1}};
+}
 
 // A cube of 1 m about (0, 0, 1), turned about y by an angle; at 45 deg its top is an edge along y.
 model::TerrainPiece turned(double angle) {

@@ -29,7 +29,7 @@ TEST(PhysicsForces, TheLawAtRestCarriesHalfTheWeightOnEachFoot) {
   const auto b = load(squeezing("20 N"));
   model::ControlModel model(b->robot);
   behaviors::PhysicsLaw law(*b, model);
-  model.update(behaviors::physics_postures(b->robot).front());
+  model.update(behaviors::physics_postures(b->robot, model, {}).front());
   const auto rest = law.rest(b->controls.front(), {20.0});
   const double half = 0.5 * model.mass() * model.gravity();
   for (std::size_t foot = 0; foot < 2; ++foot) {

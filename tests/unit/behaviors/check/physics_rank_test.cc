@@ -108,9 +108,10 @@ TEST(PhysicsRank, TheShippedBehaviorsAreClean) {
 
 TEST(PhysicsRank, PosturesAreWithinTheJointsLimitsAndTheSameEveryTime) {
   const auto behavior = load(standing("[right_foot]", single_tasks()));
-  const auto postures = behaviors::physics_postures(behavior->robot);
+  model::ControlModel model(behavior->robot);
+  const auto postures = behaviors::physics_postures(behavior->robot, model, {});
   ASSERT_EQ(postures.size(), 21U);
-  const auto again = behaviors::physics_postures(behavior->robot);
+  const auto again = behaviors::physics_postures(behavior->robot, model, {});
   for (std::size_t k = 0; k < postures.size(); ++k) {
     for (std::size_t j = 0; j < behavior->robot.joints.size(); ++j) {
       const auto& joint = behavior->robot.joints[j];
@@ -140,7 +141,7 @@ void expect_dense_ranks(const std::string& text) {
   const auto& control = behavior->controls.front();
   const auto rows = law.rows(control);
   const int n = model.nv();
-  for (const model::State& posture : behaviors::physics_postures(behavior->robot)) {
+  for (const model::State& posture : behaviors::physics_postures(behavior->robot, model, {})) {
     model.update(posture);
     std::vector<double> mass(static_cast<std::size_t>(n * n));
     model.mass_matrix(mass.data());
