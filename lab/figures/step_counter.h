@@ -40,7 +40,7 @@ class StepCounter {
     bool pending = false;  // came down after a real swing, a foot of `others` still stands
     bool landed = false;
     std::array<bool, core::kMaxContacts> others{};  // stood when it came down
-    double left_at = 0.0;  // s, first tick without contact
+    double left_at = 0.0;                           // s, first tick without contact
     double lift_height = 0.0;
     double rise = 0.0;
     double swing_time = 0.0, swing_rise = 0.0;  // of the last real swing

@@ -35,9 +35,9 @@ struct WboscOptions {
   // own norm before projection (sizes are those of the kinetic-energy metric). It lies far above
   // round-off (1e-16 x condition) and far below the smallest physical ratio met on bipeds (0.05).
   double rank_tolerance = 1e-6;
-  // The same of internal forces. Its inverse is how many newtons of other internal forces one newton
-  // may cost: the six tensions of four feet in a plane are five, and on ground that is nearly plane
-  // the sixth must not be made of the vertical forces.
+  // The same of internal forces. Its inverse is how many newtons of other internal forces one
+  // newton may cost: the six tensions of four feet in a plane are five, and on ground that is
+  // nearly plane the sixth must not be made of the vertical forces.
   double internal_rank_tolerance = 0.1;
   // Absolute floor on the same norms: a row that is zero has no rank at all.
   double absolute_floor = 1e-10;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "behaviors/check/physics/parts.h"
@@ -54,9 +55,14 @@ class ForceCheck {
   }
 
   // Internal forces that do not depend on measurements, in N at each contact; others count as 0.
+  // NaN: by statics.
   std::vector<double> references() const {
     std::vector<double> values;
     for (int k = 0; k < control_.internals.count; ++k) {
+      if (spec(k).statics >= 0) {
+        values.push_back(std::numeric_limits<double>::quiet_NaN());
+        continue;
+      }
       const Dependence needs = dependence_of(context_.behavior, spec(k).value);
       values.push_back(needs.fixed() ? spec(k).scale * values_.of(spec(k).value).value_or(0.0)
                                      : 0.0);
@@ -71,6 +77,7 @@ class ForceCheck {
 
   std::optional<Overload> overload(const std::vector<double>& internal) {
     const RestSolution solution = context_.law.rest(control_, internal);
+    in_force_ = solution.internal;
     std::optional<Overload> worst;
     double worst_excess = 0.0;
     for (std::size_t i = 0; i < control_.contacts.size(); ++i) {
@@ -97,7 +104,7 @@ class ForceCheck {
     report(0, *found, Severity::error,
            fmt::format("with internal force '{}' of {:g} N at each foot the robot cannot stand "
                        "where the world starts it",
-                       name(0), all[0]),
+                       name(0), in_force_[0]),
            {});
   }
 
@@ -109,7 +116,7 @@ class ForceCheck {
     std::vector<double> with = without;
     with[static_cast<std::size_t>(k)] = all[static_cast<std::size_t>(k)];
     if (const auto found = overload(with)) {
-      report(k, *found, Severity::error, leaves_cone(k, with[static_cast<std::size_t>(k)], {}), {});
+      report(k, *found, Severity::error, leaves_cone(k, {}), {});
       return;
     }
     for (const int parameter : dependence_of(context_.behavior, spec(k).value).parameters) {
@@ -132,7 +139,7 @@ class ForceCheck {
       if (const auto found = overload(internal)) {
         const std::string where = fmt::format(" at the end of the range of '{}'", info.name);
         report(k, *found, Severity::warning,
-               leaves_cone(k, internal[static_cast<std::size_t>(k)], where), where);
+               leaves_cone(k, where), where);
         return;
       }
     }
@@ -142,10 +149,10 @@ class ForceCheck {
     return context_.behavior.internal_instances[static_cast<std::size_t>(spec(k).instance)];
   }
 
-  std::string leaves_cone(int k, double force, const std::string& where) const {
+  std::string leaves_cone(int k, const std::string& where) const {
     return fmt::format(
         "internal force '{}' of {:g} N at each foot leaves the friction cone{}: standing still",
-        name(k), force, where);
+        name(k), in_force_[static_cast<std::size_t>(k)], where);
   }
 
   void report(int k, const Overload& found, Severity severity, const std::string& what,
@@ -167,6 +174,7 @@ class ForceCheck {
   PhysicsContext& context_;
   const ControlSpec& control_;
   StaticValues values_;
+  std::vector<double> in_force_;  // N at each contact, of the law judged last
 };
 
 }  // namespace

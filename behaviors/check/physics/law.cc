@@ -158,6 +158,8 @@ RestSolution PhysicsLaw::rest(const ControlSpec& control, const std::vector<doub
   controller_.compute(*control_, 0, nullptr, result.tau.data());
   const tasks::ControllerResult& out = controller_.result();
   for (const int contact : control.contacts) result.forces.push_back(out.force[at(contact)]);
+  result.internal.assign(out.internal_reference.begin(),
+                         out.internal_reference.begin() + control.internals.count);
   return result;
 }
 
@@ -167,6 +169,7 @@ std::vector<double> PhysicsLaw::tension_shares(const ControlSpec& control, int i
   const auto joints = at(model_.joint_count());
   tasks::ControlSet& set = control_->primary;
   fill_control_set(behavior_, control, set);
+  for (tasks::InternalCommand& command : set.internals) command.statics = 0.0;
   std::vector<double> without(joints), asked(joints), measured(joints, 0.0);
   controller_.compute(*control_, 0, nullptr, without.data());
   set.internals[at(internal)].reference = 1.0;

@@ -1,5 +1,5 @@
-// What a step is: 60 ms without ground contact, a rise of 2 cm, and then the foot that stands
-// alone.
+// What a step is: 60 ms without ground contact, a rise of 2 cm, and then the robot stands without
+// the feet that stood before.
 #include "lab/figures/step_counter.h"
 
 #include <gtest/gtest.h>
@@ -147,6 +147,49 @@ TEST_F(Steps, TouchdownsAreReportedInTheirOwnTick) {
   EXPECT_FALSE(counter.touched_down(0));
   hold(true, true, 1);
   EXPECT_FALSE(counter.touched_down(1));
+}
+
+// The contacts of four feet, for a number of milliseconds; feet in the air are 5 cm high.
+void hold_four(StepCounter& counter, int& tick, std::array<bool, 4> contact, int ms) {
+  std::array<double, 4> height{};
+  for (int k = 0; k < ms; ++k) {
+    for (std::size_t f = 0; f < 4; ++f) height[f] = contact[f] || k == 0 ? 0.0 : 0.05;
+    counter.observe(kPeriod * tick++, contact.data(), height.data());
+  }
+}
+
+TEST(StepsOfFourFeet, APairThatTakesOverFromTheOtherPairIsOneStep) {
+  StepCounter counter(4, kPeriod);
+  int tick = 0;
+  hold_four(counter, tick, {true, true, true, true}, 10);
+  hold_four(counter, tick, {true, false, false, true}, 200);
+  hold_four(counter, tick, {true, true, false, true}, 3);  // one foot of the pair comes down first
+  hold_four(counter, tick, {true, true, true, true}, 10);
+  EXPECT_EQ(counter.steps(), 0);
+  hold_four(counter, tick, {false, true, true, true}, 3);
+  EXPECT_EQ(counter.steps(), 0);  // one foot that stood still does
+  hold_four(counter, tick, {false, true, true, false}, 200);
+  EXPECT_EQ(counter.steps(), 1);
+}
+
+TEST(StepsOfFourFeet, APairThatComesDownInOneTickIsOneStep) {
+  StepCounter counter(4, kPeriod);
+  int tick = 0;
+  hold_four(counter, tick, {true, true, true, true}, 10);
+  hold_four(counter, tick, {true, false, false, true}, 200);
+  hold_four(counter, tick, {true, true, true, true}, 10);
+  hold_four(counter, tick, {false, true, true, false}, 200);
+  EXPECT_EQ(counter.steps(), 1);
+}
+
+TEST(StepsOfFourFeet, AFootThatIsLiftedAndPutBackIsNone) {
+  StepCounter counter(4, kPeriod);
+  int tick = 0;
+  for (int k = 0; k < 3; ++k) {
+    hold_four(counter, tick, {true, true, true, true}, 100);
+    hold_four(counter, tick, {true, false, true, true}, 200);
+  }
+  EXPECT_EQ(counter.steps(), 0);
 }
 
 }  // namespace
