@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "behaviors/check/physics/parts.h"
 
@@ -33,6 +34,8 @@ class ForceCheck {
   void run() {
     const std::vector<double> none(static_cast<std::size_t>(control_.internals.count), 0.0);
     const std::vector<double> all = references();
+    judge_rank(all);
+    context_.findings.settle(1);
     int judged = 0;
     for (const model::State& posture : context_.postures) {
       context_.model.update(posture);
@@ -94,6 +97,25 @@ class ForceCheck {
       worst = {control_.contacts[i], normal, tangential};
     }
     return worst;
+  }
+
+  // In the posture of the start: forces that cannot be commanded one by one, such as all six tensions
+  // of four feet on a plane. `between: all` asks for no more than there is.
+  void judge_rank(const std::vector<double>& all) {
+    std::set<int> names;
+    for (int k = 0; k < control_.internals.count; ++k) names.insert(spec(k).instance);
+    const int count = static_cast<int>(names.size());
+    if (count < control_.internals.count || context_.postures.empty()) return;
+    context_.model.update(context_.postures.front());
+    const int rank = context_.law.rest(control_, all).internal_rank;
+    if (rank >= count) return;
+    context_.findings.add(
+        Severity::error, spec(count - 1).mark, "dependent-forces", {},
+        fmt::format("{} internal forces, but the feet in contact bear only {} that are independent "
+                    "of each other{}",
+                    count, rank,
+                    control_.contacts.size() == 4 ? ": on level ground five tensions and the warp"
+                                                  : ""));
   }
 
   // Where feet stand on slopes too steep for them, internal forces have to hold them: those of the

@@ -160,6 +160,7 @@ RestSolution PhysicsLaw::rest(const ControlSpec& control, const std::vector<doub
   for (const int contact : control.contacts) result.forces.push_back(out.force[at(contact)]);
   result.internal.assign(out.internal_reference.begin(),
                          out.internal_reference.begin() + control.internals.count);
+  result.internal_rank = controller_.primary().solution().named_internal_rank;
   return result;
 }
 

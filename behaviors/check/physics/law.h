@@ -31,6 +31,7 @@ struct RestSolution {
   std::vector<double> tau;                    // N m, by joint, before limits
   std::vector<std::array<double, 3>> forces;  // N, ground on robot, world, by contact of the law
   std::vector<double> internal;               // N at each contact, references in force
+  int internal_rank = 0;                      // of the internal forces that the law names
 };
 
 class PhysicsLaw {
