@@ -3,11 +3,20 @@
 // The torque measured at a tick is what acted in the physics step before it. With a delay of d of
 // the S steps of a period it is the command n = ceil((d + 1) / S) = 1 + floor(d / S) periods ago,
 // and what is fed back, F = F_ref + K_F (F_ref - F_measured) ([Kim16] eqs. (4)-(5) with E7), has
-// gone through a low-pass: sampled_loop.h. A series-elastic actuator's own lag is not in that:
-// there the loop is known to be stable below 1 alone, whatever the low-pass.
+// gone through a low-pass: sampled_loop.h. A series-elastic actuator's own lag comes on top. With
+// the joint at rest (internal forces move nothing) a direct torque loop of the gains p, i, forward
+// and d answers a commanded torque with
+//   G(s) = k (forward + p + i/s) / (J s^2 + d s + k (1 + p + i/s))
+// and by Nyquist an error grows from K_F = 1/|G L| on, at the frequency at which G, low-pass and
+// delay turn by 180 deg: the least of all joints. Of other loops it is known that they are stable
+// below 1 alone, whatever the low-pass.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 #include "behaviors/check/physics/parts.h"
@@ -18,6 +27,41 @@ namespace footfall::behaviors {
 namespace {
 
 using core::Severity;
+
+using Complex = std::complex<double>;
+
+// The least K_F, for one joint, from which an error grows; `delay` in s, bandwidth in Hz.
+double elastic_limit(const model::JointDescription& joint, const hal::TorqueLoopGains& gains,
+                     double bandwidth, double delay) {
+  const double turn = 2.0 * std::numbers::pi;
+  double phase = 0.0, last = 0.0;                           // unwrapped
+  constexpr double kFrom = 0.1, kTo = 1e4, kRatio = 1.002;  // rad/s
+  for (double w = kFrom; w < kTo; w *= kRatio) {
+    const Complex s(0.0, w), p = gains.p + gains.i / s;
+    const Complex answer = joint.spring * (gains.forward + p) /
+                           (joint.rotor * s * s + gains.damping * s + joint.spring * (1.0 + p));
+    const Complex low_pass = bandwidth > 0.0 ? 1.0 / (1.0 + s / (turn * bandwidth)) : 1.0;
+    const Complex loop = answer * low_pass;
+    const double now = std::arg(loop);
+    phase += std::remainder(now - last, turn);
+    last = now;
+    if (phase - w * delay <= -std::numbers::pi) return 1.0 / std::abs(loop);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+// Of all joints, or 1 where the answer of their torque loops is not known.
+double elastic_limit(const Behavior& behavior, double bandwidth, double delay) {
+  const model::RobotDescription& robot = behavior.robot;
+  if (robot.drives.torque_loop.empty() || !behavior.torque_loops.empty()) return 1.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const hal::TorqueLoopGains& gains = robot.drives.torque_loop[j];
+    if (gains.type != hal::TorqueLoopGains::Type::direct || gains.observer > 0.0) return 1.0;
+    least = std::min(least, elastic_limit(robot.joints[j], gains, bandwidth, delay));
+  }
+  return std::max(1.0, least);
+}
 
 class FeedbackCheck {
  public:
@@ -67,10 +111,12 @@ class FeedbackCheck {
     const auto late_steps = std::lround(context_.world.command_delay * steps / b().period());
     const int periods = 1 + static_cast<int>(late_steps / steps);
     const bool elastic = context_.world.series_elastic;
-    const double limit = elastic ? 1.0 : force_feedback_limit(*bandwidth, b().period(), periods);
+    // Half a period: torques are held as commanded.
+    const double limit = elastic ? elastic_limit(b(), *bandwidth, (periods + 0.5) * b().period())
+                                 : force_feedback_limit(*bandwidth, b().period(), periods);
     const bool negative = *feedback <= -1.0;  // z = 1 is a root at -1, whatever low-pass and delay
     const bool unstable = negative || *feedback >= limit;
-    if (!unstable && (elastic || !now || *feedback <= 0.5 * limit)) return false;
+    if (!unstable && (limit == 1.0 || !now || *feedback <= 0.5 * limit)) return false;
     const std::string& name = b().internal_instances[at(spec.instance)];
     const std::string loop = fmt::format(
         "the measured force is that of a command {:.3g} ms before, through a low-pass of {:g} Hz{}",
