@@ -48,6 +48,9 @@ void load_robot(LoadContext& context, const std::string& path) {
     return;
   }
   context.behavior.robot = model::load_robot(file, context.diagnostics);
+  if (context.options.world && !context.diagnostics.has_errors()) {
+    context.options.world(context.behavior.robot, context.diagnostics);
+  }
   context.behavior.rate_mhz = context.behavior.robot.rate_mhz;
 }
 

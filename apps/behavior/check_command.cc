@@ -151,8 +151,11 @@ behaviors::PhysicsWorld check_world_of(const lab::ScenarioDescription& scenario,
 // The scenario's behavior, in its world, as `run` checks it.
 void check_scenario(const std::string& path, Checked& checked) {
   core::Diagnostics& diagnostics = checked.diagnostics;
-  const lab::ScenarioDescription scenario = lab::load_scenario(path, {search_path()}, diagnostics);
+  lab::ScenarioDescription scenario = lab::load_scenario(path, {search_path()}, diagnostics);
   const behaviors::PhysicsWorld world = check_world_of(scenario, diagnostics);
+  if (world.actuators && !diagnostics.has_errors()) {  // once more, with the robot as it is there
+    scenario = lab::load_scenario(path, {search_path(), {}, world.actuators}, diagnostics);
+  }
   if (diagnostics.has_errors() || scenario.behavior == nullptr) return;
   core::Diagnostics found;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) found.add_file(file);

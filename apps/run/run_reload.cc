@@ -29,6 +29,7 @@ lab::ReloadSetup reload_setup(const RunOptions& options, hal::Hardware& hardware
   setup.hardware = &hardware;
   setup.load.search = search_path();
   setup.load.robot = options.robot;
+  setup.load.world = physics.actuators;
   core::Diagnostics ignored;  // reported when they were split before
   setup.load.set = split_settings(options.set, ignored);
   setup.source = log_source(options, world);

@@ -60,9 +60,16 @@ CheckedScenario load_checked(const RunOptions& options) {
   if (options.backend == "stub" && !world_given && options.world_set.empty()) {
     world = stand_world(std::move(world), scenario.behavior->robot);
   }
-  check_world_fits(world, scenario.behavior->robot, lab::holds_of(scenario));
   const bool held = options.backend == "stub" || !lab::holds_of(scenario).empty();
   const behaviors::PhysicsWorld facts = physics_world(world, held);
+  if (facts.actuators) {  // once more, with the robot as it is in the world
+    diagnostics = core::Diagnostics();
+    scenario =
+        lab::load_scenario(options.behavior, {how.search, how.set, facts.actuators}, diagnostics);
+    print_diagnostics(diagnostics);
+    if (diagnostics.has_errors()) throw InputError("");
+  }
+  check_world_fits(world, scenario.behavior->robot, lab::holds_of(scenario));
   core::Diagnostics physics;  // positions refer to the behavior's files
   for (const std::string& file : scenario.behavior_files) physics.add_file(file);
   behaviors::check_physics(*scenario.behavior, physics, facts);

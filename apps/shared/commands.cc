@@ -199,6 +199,18 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
   return pairs;
 }
 
+namespace {
+
+std::function<void(model::RobotDescription&, core::Diagnostics&)> actuators_of(
+    const sim::WorldDescription& world) {
+  if (!sim::changes_robot(world.actuators)) return {};
+  return [actuators = world.actuators](model::RobotDescription& robot, core::Diagnostics& told) {
+    sim::apply_actuators(actuators, robot, told);
+  };
+}
+
+}  // namespace
+
 behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world, bool held) {
   return {world.variation.least_friction().value_or(world.friction),
           world.physics.steps_per_tick,
@@ -208,15 +220,20 @@ behaviors::PhysicsWorld physics_world(const sim::WorldDescription& world, bool h
           world.actuators.viscous,
           world.constraints.empty() && !held ? world.name : "",
           world.control_model.terrain,
+          actuators_of(world),
           [start = world.start_joints](const model::RobotDescription& robot) {
             core::Diagnostics ignored;  // told where the world meets the robot
             return sim::start_joints(start, robot, ignored);
           }};
 }
 
-void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& robot,
+void check_world_fits(const sim::WorldDescription& world, const model::RobotDescription& of_file,
                       core::Diagnostics& diagnostics,
                       const std::vector<model::BodySprings>& holds) {
+  model::RobotDescription robot = of_file;
+  const int before = diagnostics.error_count();
+  sim::apply_actuators(world.actuators, robot, diagnostics);  // once more, maybe: the same
+  if (diagnostics.error_count() > before) return;
   sim::check_actuators(world, robot, diagnostics);
   sim::check_sensors(world.sensors, robot, diagnostics);
   if (world.actuators.model == sim::ActuatorModel::series_elastic) {
@@ -242,6 +259,7 @@ std::unique_ptr<behaviors::Behavior> load_or_explain(const std::string& path,
   options.robot = robot;
   options.set = split_settings(set, diagnostics);
   if (world != nullptr) options.check = behaviors::physics_check(*world);
+  if (world != nullptr) options.world = world->actuators;
   std::unique_ptr<behaviors::Behavior> behavior;
   if (!diagnostics.has_errors() && behavior_is_there(path, diagnostics)) {
     behavior = behaviors::load_behavior(find_behavior_file(path), options, diagnostics);

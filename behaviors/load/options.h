@@ -22,6 +22,9 @@ struct LoadOptions {
   std::string robot;                // replaces the file's `robot:` if not empty
   std::vector<NativeFunctionInfo> functions;             // registered by the program
   std::vector<std::pair<std::string, std::string>> set;  // --set NAME=VALUE, in YAML notation
+  // What the world in which it runs changes of the robot: its actuators. Called once the robot's
+  // file is read.
+  std::function<void(model::RobotDescription&, core::Diagnostics&)> world;
   // Further checks of a behavior without errors, as check_physics(). What they find in a base is
   // reported at the value of an overlay or of --set that it follows from.
   std::function<void(const Behavior&, core::Diagnostics&)> check;

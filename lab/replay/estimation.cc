@@ -31,6 +31,7 @@ std::unique_ptr<behaviors::Behavior> load_trial(const Log& log, const RunSetup& 
   behaviors::LoadOptions options;
   options.search = folder.search();
   options.robot = folder.place_of(setup.robot_file);
+  options.world = actuators_of(setup);
   if (log.get("estimator") == trial.estimator) {
     for (const LoggedParameter& p : log.parameters) {
       if (!p.name.starts_with("estimator.")) continue;

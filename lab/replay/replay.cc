@@ -57,6 +57,7 @@ std::unique_ptr<behaviors::Behavior> load(const RunSetup& setup, const std::stri
   options.search = folder.search();
   options.robot = folder.place_of(setup.robot_file);
   options.set = setup.set;
+  options.world = actuators_of(setup);
   auto behavior = behaviors::load_behavior(
       file.empty() ? folder.place_of(setup.behavior_file) : file, options, diagnostics);
   if (behavior == nullptr) throw std::runtime_error(diagnostics.to_string());

@@ -15,6 +15,7 @@
 #include "core/text/whole_file.h"
 #include "core/yaml/yaml.h"
 #include "lab/run/run_log.h"
+#include "model/robot/torque_loop.h"
 
 namespace footfall::lab {
 namespace {
@@ -117,6 +118,47 @@ std::vector<engine::LogFile> source_files(const behaviors::Behavior& behavior,
   return std::move(collector.files);
 }
 
+namespace {
+
+void add_actuators(const model::RobotDescription& robot, nlohmann::ordered_json& json) {
+  json["springs"] = json["torque_loop"] = nlohmann::ordered_json::array();
+  for (const model::JointDescription& joint : robot.joints) json["springs"].push_back(joint.spring);
+  for (const hal::TorqueLoopGains& gains : robot.drives.torque_loop) {
+    nlohmann::ordered_json row = {static_cast<int>(gains.type), static_cast<int>(gains.damps)};
+    for (const model::TorqueLoopKey& key : model::kTorqueLoopGainKeys) {
+      row.push_back(gains.*key.member);
+    }
+    json["torque_loop"].push_back(std::move(row));
+  }
+}
+
+void read_actuators(const nlohmann::json& json, RunSetup& setup) {
+  json.at("springs").get_to(setup.springs);
+  for (const auto& row : json.at("torque_loop")) {
+    hal::TorqueLoopGains& gains = setup.torque_loop.emplace_back();
+    gains.type = static_cast<hal::TorqueLoopGains::Type>(row.at(0).get<int>());
+    gains.damps = static_cast<hal::TorqueLoopGains::Damping>(row.at(1).get<int>());
+    std::size_t column = 2;
+    for (const model::TorqueLoopKey& key : model::kTorqueLoopGainKeys) {
+      row.at(column++).get_to(gains.*key.member);
+    }
+  }
+}
+
+}  // namespace
+
+std::function<void(model::RobotDescription&, core::Diagnostics&)> actuators_of(
+    const RunSetup& setup) {
+  if (setup.springs.empty()) return {};
+  return [springs = setup.springs, loops = setup.torque_loop](model::RobotDescription& robot,
+                                                              core::Diagnostics&) {
+    for (std::size_t j = 0; j < robot.joints.size() && j < springs.size(); ++j) {
+      robot.joints[j].spring = springs[j];
+    }
+    if (loops.size() == robot.joints.size()) robot.drives.torque_loop = loops;
+  };
+}
+
 std::string setup_text(const behaviors::Behavior& behavior, const LogSource& source) {
   const engine::LoopSettings& s = source.settings;
   nlohmann::ordered_json json;
@@ -134,6 +176,7 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   for (const model::TerrainPiece& box : s.deviation.terrain.boxes) {
     json["terrain"].push_back({{"centre", box.centre}, {"R_WP", box.R_WP}, {"half", box.half}});
   }
+  if (source.own_actuators) add_actuators(behavior.robot, json["actuators"]);
   json["surface"] = nlohmann::json::array();
   for (const model::SurfaceRamp& ramp : s.surface.ramps) {
     json["surface"].push_back({ramp.from, ramp.to, ramp.rise});
@@ -173,6 +216,7 @@ RunSetup read_setup(const std::string& text) {
     for (const auto& ramp : json.at("surface")) {
       s.surface.ramps.push_back({ramp.at(0), ramp.at(1), ramp.at(2)});
     }
+    if (json.contains("actuators")) read_actuators(json.at("actuators"), setup);
     if (json.contains("continues")) {
       const auto& from = json.at("continues");
       setup.continues = {from.at("number"), from.at("back"), from.at("watch")};

@@ -2,6 +2,7 @@
 // run was loaded from, and the settings of the control loop as JSON whose numbers are exact.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,7 +38,13 @@ struct RunSetup {
   std::vector<std::pair<std::string, std::string>> set;
   engine::LoopSettings settings;
   LogContinuation continues;
+  // Actuators of the world in the place of the robot's file's, by joint; empty: it has none.
+  std::vector<double> springs;  // N m/rad
+  std::vector<hal::TorqueLoopGains> torque_loop;
 };
+// Gives the robot of the log the actuators of its world: LoadOptions::world of a replay.
+std::function<void(model::RobotDescription&, core::Diagnostics&)> actuators_of(
+    const RunSetup& setup);
 // Throws std::runtime_error with one sentence if the text is not of that kind.
 RunSetup read_setup(const std::string& text);
 

@@ -66,10 +66,11 @@ struct LogSource {
   std::string command;                                   // as it was typed, for people
   double friction = 0.0;                                 // of the ground; 0: unknown
   bool elastic = false;                                  // series-elastic actuators
-  bool aids = false;                                     // the world has external aids
-  bool sensor_errors = false;                            // the world's sensors have errors
-  std::vector<std::string> markers;                      // by name; empty: the robot's, if logged
-  int row_every = 6;                                     // ticks; 1: derived signals of all ticks
+  bool own_actuators = false;        // the world has actuators in the place of the robot's
+  bool aids = false;                 // the world has external aids
+  bool sensor_errors = false;        // the world's sensors have errors
+  std::vector<std::string> markers;  // by name; empty: the robot's, if logged
+  int row_every = 6;                 // ticks; 1: derived signals of all ticks
 };
 
 // The log's header: behavior, robot, world, seed, states, and all files it was loaded from.

@@ -103,6 +103,7 @@ void load_named_behavior(ScenarioContext& context, const YamlNode& root,
   options.search = search;
   options.robot = robot;
   options.set = given.set;
+  options.world = given.world;
   core::Diagnostics found;
   scenario.behavior = behaviors::load_behavior(scenario.behavior_path, options, found);
   take_errors(context, found);

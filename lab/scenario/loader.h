@@ -2,6 +2,7 @@
 // run scenarios.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,8 @@ struct ScenarioOptions {
   std::vector<std::string> search;
   // Behavior values NAME=VALUE, as with --set; they replace the file's values.
   std::vector<std::pair<std::string, std::string>> set{};
+  // LoadOptions::world of its behavior; whoever has loaded the scenario's world knows it.
+  std::function<void(model::RobotDescription&, core::Diagnostics&)> world{};
 };
 
 // Whether the first key of the file or its base is `scenario`; false if unreadable.

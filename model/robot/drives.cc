@@ -41,24 +41,6 @@ void read_gain(const YamlNode& node, const TorqueLoopKey& key, RobotDescription&
   }
 }
 
-void read_torque_loop(const YamlNode& node, RobotDescription& robot, Diagnostics& diagnostics) {
-  if (!core::expect_map(node, "{type: direct, p: NUMBER, d: DAMPING}", diagnostics)) return;
-  core::check_keys(node, kTorqueLoopKeys, diagnostics);
-  hal::TorqueLoopGains all;
-  if (const YamlNode* type = node.find("type")) {
-    const auto choice = core::read_choice(*type, kTorqueLoopTypes, diagnostics);
-    all.type = static_cast<hal::TorqueLoopGains::Type>(choice.value_or(0));
-  }
-  if (const YamlNode* damps = node.find("damps")) {
-    const auto choice = core::read_choice(*damps, kTorqueLoopDampings, diagnostics);
-    all.damps = static_cast<hal::TorqueLoopGains::Damping>(choice.value_or(0));
-  }
-  robot.drives.torque_loop.assign(robot.joints.size(), all);
-  for (const TorqueLoopKey& key : kTorqueLoopGainKeys) {
-    if (const YamlNode* value = node.find(key.name)) read_gain(*value, key, robot, diagnostics);
-  }
-}
-
 }  // namespace
 
 void read_positive(const YamlNode& map, std::string_view key, core::Dimension dimension,
@@ -86,6 +68,24 @@ void read_actuator(const YamlNode& sea, JointDescription& joint, Diagnostics& di
   read_positive(sea, "rotor", core::kInertia, joint.rotor, diagnostics);
   read_positive(sea, "torque", core::kTorque, joint.motor_torque, diagnostics);
   read_positive(sea, "speed", core::kRate, joint.motor_speed, diagnostics);
+}
+
+void read_torque_loop(const YamlNode& node, RobotDescription& robot, Diagnostics& diagnostics) {
+  if (!core::expect_map(node, "{type: direct, p: NUMBER, d: DAMPING}", diagnostics)) return;
+  core::check_keys(node, kTorqueLoopKeys, diagnostics);
+  hal::TorqueLoopGains all;
+  if (const YamlNode* type = node.find("type")) {
+    const auto choice = core::read_choice(*type, kTorqueLoopTypes, diagnostics);
+    all.type = static_cast<hal::TorqueLoopGains::Type>(choice.value_or(0));
+  }
+  if (const YamlNode* damps = node.find("damps")) {
+    const auto choice = core::read_choice(*damps, kTorqueLoopDampings, diagnostics);
+    all.damps = static_cast<hal::TorqueLoopGains::Damping>(choice.value_or(0));
+  }
+  robot.drives.torque_loop.assign(robot.joints.size(), all);
+  for (const TorqueLoopKey& key : kTorqueLoopGainKeys) {
+    if (const YamlNode* value = node.find(key.name)) read_gain(*value, key, robot, diagnostics);
+  }
 }
 
 void read_drives(const YamlNode& node, RobotDescription& robot, Diagnostics& diagnostics) {

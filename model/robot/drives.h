@@ -15,6 +15,9 @@ void read_positive(const core::YamlNode& map, std::string_view key, core::Dimens
 
 void read_actuator(const core::YamlNode& sea, JointDescription& joint,
                    core::Diagnostics& diagnostics);
+// `torque_loop:` in the place of the robot's; a world may have one, too. Needs the robot's joints.
+void read_torque_loop(const core::YamlNode& node, RobotDescription& robot,
+                      core::Diagnostics& diagnostics);
 // Needs the robot's joints.
 void read_drives(const core::YamlNode& node, RobotDescription& robot,
                  core::Diagnostics& diagnostics);

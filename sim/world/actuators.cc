@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 #include "core/yaml/value_reader.h"
+#include "model/robot/drives.h"
+#include "model/robot/torque_loop.h"
 #include "sim/world/by_joint.h"
 #include "sim/world/keys.h"
 
@@ -86,8 +88,36 @@ void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnosti
     actuators.elastic_keys.push_back({key, value->mark});
     check_by_joint(*value, read_one, expected, diagnostics);
   };
+  keep("stiffness", read_stiffness, "a stiffness, or one by joint", actuators.stiffness);
+  if (const YamlNode* loop = node.find("torque_loop")) {
+    actuators.torque_loop = {*loop, diagnostics.file(loop->mark.file)};
+    actuators.elastic_keys.push_back({"torque_loop", loop->mark});
+    if (core::expect_map(*loop, "{type: direct, p: NUMBER, d: DAMPING}", diagnostics)) {
+      core::check_keys(*loop, model::kTorqueLoopKeys, diagnostics);
+    }
+  }
   keep("spring", read_change, "a change such as \"+3 %\", or one by joint", actuators.spring);
   keep("flexible", read_stiffness, "a stiffness, or one by joint", actuators.flexible);
+}
+
+bool changes_robot(const ActuatorSettings& actuators) {
+  return actuators.model == ActuatorModel::series_elastic &&
+         !(actuators.stiffness.node.is_null() && actuators.torque_loop.node.is_null());
+}
+
+void apply_actuators(const ActuatorSettings& actuators, model::RobotDescription& robot,
+                     Diagnostics& diagnostics) {
+  if (!changes_robot(actuators)) return;
+  const std::vector<double> springs =
+      by_joint(actuators.stiffness, read_stiffness, robot, diagnostics);
+  for (std::size_t j = 0; j < springs.size(); ++j) {
+    if (springs[j] > 0.0) robot.joints[j].spring = springs[j];
+  }
+  if (actuators.torque_loop.node.is_null()) return;
+  const YamlNode loop = placed(actuators.torque_loop, diagnostics);
+  model::read_torque_loop(loop, robot, diagnostics);
+  robot.drives.mark = loop.mark;
+  robot.drives.file = actuators.torque_loop.file;
 }
 
 void check_actuators(const ActuatorSettings& actuators, const model::RobotDescription& robot,

@@ -26,6 +26,8 @@ struct ActuatorSettings {
   double deflection_resolution = 0.0;  // rad, of the springs' encoders
   ByJoint spring;                      // relative change of the true springs
   ByJoint flexible;                    // N m/rad, stiffness of links
+  ByJoint stiffness;                   // N m/rad, of springs and drives in the place of the robot's
+  ByJoint torque_loop;                 // gains of the drives in the place of the robot's: their map
   core::Mark mark;                     // position of `model`, else of the section
   std::string file;                    // of that position
   struct Key {
@@ -37,6 +39,13 @@ struct ActuatorSettings {
   std::vector<double> drawn_springs;  // factors
   std::vector<double> drawn_coulomb;  // factors
 };
+
+// Whether the world has actuators other than the robot's file.
+bool changes_robot(const ActuatorSettings& actuators);
+// Makes the robot's springs and torque loops those of the world. Everything that uses them (the
+// behavior's tables, the checks, the drives) has the robot from here.
+void apply_actuators(const ActuatorSettings& actuators, model::RobotDescription& robot,
+                     core::Diagnostics& diagnostics);
 
 void read_actuators(const core::YamlNode& node, ActuatorSettings& actuators,
                     core::Diagnostics& diagnostics);

@@ -18,6 +18,12 @@ void move_to(core::YamlNode& node, int file) {
 
 }  // namespace
 
+core::YamlNode placed(const ByJoint& given, core::Diagnostics& diagnostics) {
+  core::YamlNode node = given.node;
+  move_to(node, diagnostics.add_file(given.file));
+  return node;
+}
+
 void check_by_joint(const core::YamlNode& node, ReadValue read, const char* expected,
                     core::Diagnostics& diagnostics) {
   if (node.is_scalar()) {
@@ -30,9 +36,8 @@ void check_by_joint(const core::YamlNode& node, ReadValue read, const char* expe
 std::vector<double> by_joint(const ByJoint& given, ReadValue read,
                              const model::RobotDescription& robot, core::Diagnostics& diagnostics) {
   std::vector<double> values(robot.joints.size(), 0.0);
-  core::YamlNode node = given.node;
-  if (node.is_null()) return values;
-  move_to(node, diagnostics.add_file(given.file));
+  if (given.node.is_null()) return values;
+  const core::YamlNode node = placed(given, diagnostics);
   if (node.is_scalar()) {
     if (!node.scalar.empty()) values.assign(values.size(), read(node, diagnostics).value_or(0.0));
     return values;

@@ -25,6 +25,8 @@ struct ByJoint {
   std::string file;     // of its positions
 };
 
+// The node at positions of these diagnostics, which may not know its file yet.
+core::YamlNode placed(const ByJoint& given, core::Diagnostics& diagnostics);
 void check_by_joint(const core::YamlNode& node, ReadValue read, const char* expected,
                     core::Diagnostics& diagnostics);
 // By joint of the robot, 0 where none is given. Reports joints that it does not have.

@@ -2,6 +2,7 @@
 #include "sim/world/keys.h"
 
 #include "model/aids/springs.h"
+#include "model/robot/torque_loop.h"
 #include "model/variation/variation.h"
 
 namespace footfall::sim {
@@ -127,6 +128,13 @@ constexpr KeySpec kActuatorsRows[] = {
         "series_elastic: relative change of the true springs, for all joints or by joint; the "
         "drives count on those of the robot's file")
         .otherwise("0 %"),
+    key("stiffness", by_axis(quantity(kTorque, "a stiffness")),
+        "series_elastic: springs in the place of those of the robot's file, known to the drives; "
+        "for all joints or by joint")
+        .otherwise("the robot's"),
+    key("torque_loop", map_of(model::kTorqueLoopKeys),
+        "series_elastic: the drives' gains in the place of those of the robot's file, all of them")
+        .otherwise("the robot's"),
     key("flexible", by_axis(quantity(kTorque, "a stiffness")),
         "series_elastic: links that bend about their joint's axis, behind its encoder: stiffness, "
         "for all joints or by joint")

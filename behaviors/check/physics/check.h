@@ -29,6 +29,9 @@ struct PhysicsWorld {
   // Name of a world in which nothing but its contacts bears the robot; empty: not known.
   std::string unaided{};
   model::Terrain terrain{};  // as the controller believes it
+  // LoadOptions::world of a behavior that is to be checked in it; none: the robot is as its file
+  // is.
+  std::function<void(model::RobotDescription&, core::Diagnostics&)> actuators{};
   // By joint: how the world's start differs from the robot's posture, rad; none: not at all.
   std::function<std::vector<double>(const model::RobotDescription&)> start_joints{};
 };

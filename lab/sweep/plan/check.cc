@@ -53,6 +53,21 @@ void check_in_world(const behaviors::Behavior& behavior, const std::vector<std::
   take_errors(found, diagnostics);
 }
 
+// The behavior once more, with the actuators that its robot has in a world.
+std::unique_ptr<behaviors::Behavior> base_behavior(
+    const SweepDescription& sweep, const SweepCheckOptions& options,
+    const std::function<void(model::RobotDescription&, Diagnostics&)>& world) {
+  Diagnostics told;  // without them, and by the world's check
+  if (!sweep.scenario.empty()) {
+    return std::move(load_scenario(sweep.scenario, {options.search, {}, world}, told).behavior);
+  }
+  behaviors::LoadOptions load;
+  load.search = options.search;
+  load.robot = sweep.robot;
+  load.world = world;
+  return behaviors::load_behavior(sweep.behavior, load, told);
+}
+
 // Checks the behavior or scenario itself, and takes the settings that the sweep leaves to it.
 void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagnostics& diagnostics,
                 std::vector<std::string>& files) {
@@ -91,7 +106,12 @@ void check_base(SweepDescription& sweep, const SweepCheckOptions& options, Diagn
     take_errors(world, diagnostics);
     list_files(world, files);
     const bool good = behavior != nullptr && behavior->has_robot && !diagnostics.has_errors();
-    if (good) check_in_world(*behavior, behavior_files, physics, diagnostics);
+    if (good && physics.actuators) {
+      const auto there = base_behavior(sweep, options, physics.actuators);
+      if (there != nullptr) check_in_world(*there, behavior_files, physics, diagnostics);
+    } else if (good) {
+      check_in_world(*behavior, behavior_files, physics, diagnostics);
+    }
   }
 }
 
