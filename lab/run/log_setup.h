@@ -38,6 +38,7 @@ struct RunSetup {
   std::vector<std::pair<std::string, std::string>> set;
   engine::LoopSettings settings;
   LogContinuation continues;
+  model::Terrain terrain;  // of the simulation
   // Actuators of the world in the place of the robot's file's, by joint; empty: it has none.
   std::vector<double> springs;  // N m/rad
   std::vector<hal::TorqueLoopGains> torque_loop;
