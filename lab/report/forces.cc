@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <stdexcept>
-#include <utility>
 
 #include "lab/report/sections.h"
 #include "lab/run/log_setup.h"
@@ -18,22 +16,6 @@ namespace {
 
 constexpr double kLoaded = 0.05;  // of the largest normal force; meaningless ratios below
 constexpr std::size_t kConePoints = 1500;
-
-// The ground as it is in the simulation and as the controller believes it; level if the log does
-// not say.
-struct Grounds {
-  model::Terrain truth, belief;
-};
-
-Grounds grounds_of(const Log& log) {
-  if (log.setup.empty()) return {};
-  try {
-    RunSetup setup = read_setup(log.setup);
-    return {std::move(setup.terrain), std::move(setup.settings.deviation.terrain)};
-  } catch (const std::runtime_error&) {
-    return {};
-  }
-}
 
 // Force of one foot, N, measured (`force.`) or predicted (`force_cmd.`): along the normal of the
 // ground where the contact point is, and beside it.
@@ -151,7 +133,7 @@ Section force_section(const Log& log) {
                   "",
                   {},
                   {}};
-  const Grounds grounds = grounds_of(log);
+  const Grounds grounds = grounds_of(log.setup);
   const double friction = std::atof(log.get("friction").c_str());
   const std::vector<std::string> feet = parts(log, "force.", ".z");
   for (const std::string& foot : feet) {

@@ -204,6 +204,16 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   return core::json_text(json);
 }
 
+Grounds grounds_of(const std::string& setup_text) {
+  if (setup_text.empty()) return {};
+  try {
+    RunSetup setup = read_setup(setup_text);
+    return {std::move(setup.terrain), std::move(setup.settings.deviation.terrain)};
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 std::string setup_text(const std::string& text, const LogContinuation& continues) {
   auto json = core::parse_ordered_json(text);
   json["continues"] = {
