@@ -10,6 +10,7 @@
 
 #include "lab/report/data.h"
 #include "lab/report/strip.h"
+#include "lab/run/log_setup.h"
 #include "sim/view/video.h"
 
 namespace footfall::apps {
@@ -81,7 +82,8 @@ sim::FilmFrame LoggedPose::frame(std::size_t row) const {
 }
 
 sim::Image film_strip(const lab::Log& log, std::span<const double> times) {
-  sim::FilmRenderer renderer(film_model(log), kPictureWidth, kPictureHeight);
+  sim::FilmRenderer renderer(film_model(log), kPictureWidth, kPictureHeight, sim::FilmQuality::fine,
+                             lab::grounds_of(log.setup).truth);
   const LoggedPose pose(log, renderer);
   std::vector<sim::Image> pictures;
   for (const double time : times) {
@@ -91,7 +93,8 @@ sim::Image film_strip(const lab::Log& log, std::span<const double> times) {
 }
 
 void write_film(const lab::Log& log, const std::string& path) {
-  sim::FilmRenderer renderer(film_model(log), kFilmWidth, kFilmHeight, sim::FilmQuality::fast);
+  sim::FilmRenderer renderer(film_model(log), kFilmWidth, kFilmHeight, sim::FilmQuality::fast,
+                             lab::grounds_of(log.setup).truth);
   const LoggedPose pose(log, renderer);
   sim::MovieWriter movie(path, kFilmWidth, kFilmHeight, kFilmRate);
   const auto frames = static_cast<int>((log.time.back() - log.time.front()) * kFilmRate) + 1;

@@ -305,6 +305,7 @@ lab::LogSource log_source(const RunOptions& options, const sim::WorldDescription
   source.world_file = world.path;
   if (options.backend == "mujoco") source.friction = world.friction;
   source.elastic = world.actuators.model == sim::ActuatorModel::series_elastic;
+  if (options.backend == "mujoco") source.terrain = sim::terrain_of(world.terrain);
   source.own_actuators = sim::changes_robot(world.actuators);
   source.aids = !world.constraints.empty();
   source.sensor_errors = world.sensors.errors.any();

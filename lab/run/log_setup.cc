@@ -120,6 +120,26 @@ std::vector<engine::LogFile> source_files(const behaviors::Behavior& behavior,
 
 namespace {
 
+nlohmann::ordered_json terrain_json(const model::Terrain& terrain) {
+  auto json = nlohmann::ordered_json::array();
+  for (const model::TerrainPiece& box : terrain.boxes) {
+    json.push_back({{"centre", box.centre}, {"R_WP", box.R_WP}, {"half", box.half}});
+  }
+  return json;
+}
+
+// Level ground in logs from before there was terrain.
+model::Terrain read_terrain(const nlohmann::json& json, const char* key) {
+  model::Terrain terrain;
+  for (const auto& box : json.value(key, nlohmann::json::array())) {
+    model::TerrainPiece& piece = terrain.boxes.emplace_back();
+    box.at("centre").get_to(piece.centre);
+    box.at("R_WP").get_to(piece.R_WP);
+    box.at("half").get_to(piece.half);
+  }
+  return terrain;
+}
+
 void add_actuators(const model::RobotDescription& robot, nlohmann::ordered_json& json) {
   json["springs"] = json["torque_loop"] = nlohmann::ordered_json::array();
   for (const model::JointDescription& joint : robot.joints) json["springs"].push_back(joint.spring);
@@ -172,10 +192,8 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   json["mass_scale"] = s.deviation.mass_scale;
   json["mass_scales"] = s.deviation.mass_scales;
   json["com_shift"] = s.deviation.com_shift;
-  json["terrain"] = nlohmann::json::array();
-  for (const model::TerrainPiece& box : s.deviation.terrain.boxes) {
-    json["terrain"].push_back({{"centre", box.centre}, {"R_WP", box.R_WP}, {"half", box.half}});
-  }
+  json["terrain"] = terrain_json(s.deviation.terrain);
+  json["true_terrain"] = terrain_json(source.terrain);
   if (source.own_actuators) add_actuators(behavior.robot, json["actuators"]);
   json["surface"] = nlohmann::json::array();
   for (const model::SurfaceRamp& ramp : s.surface.ramps) {
@@ -184,6 +202,16 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   json["script_access"] = {{"files", s.script_access.files},
                            {"processes", s.script_access.processes}};
   return core::json_text(json);
+}
+
+Grounds grounds_of(const std::string& setup_text) {
+  if (setup_text.empty()) return {};
+  try {
+    RunSetup setup = read_setup(setup_text);
+    return {std::move(setup.terrain), std::move(setup.settings.deviation.terrain)};
+  } catch (const std::runtime_error&) {
+    return {};
+  }
 }
 
 std::string setup_text(const std::string& text, const LogContinuation& continues) {
@@ -207,12 +235,8 @@ RunSetup read_setup(const std::string& text) {
     json.at("mass_scale").get_to(s.deviation.mass_scale);
     json.at("mass_scales").get_to(s.deviation.mass_scales);
     json.at("com_shift").get_to(s.deviation.com_shift);
-    for (const auto& box : json.value("terrain", nlohmann::json::array())) {
-      model::TerrainPiece& piece = s.deviation.terrain.boxes.emplace_back();
-      box.at("centre").get_to(piece.centre);
-      box.at("R_WP").get_to(piece.R_WP);
-      box.at("half").get_to(piece.half);
-    }
+    s.deviation.terrain = read_terrain(json, "terrain");
+    setup.terrain = read_terrain(json, "true_terrain");
     for (const auto& ramp : json.at("surface")) {
       s.surface.ramps.push_back({ramp.at(0), ramp.at(1), ramp.at(2)});
     }

@@ -38,10 +38,17 @@ struct RunSetup {
   std::vector<std::pair<std::string, std::string>> set;
   engine::LoopSettings settings;
   LogContinuation continues;
+  model::Terrain terrain;  // of the simulation
   // Actuators of the world in the place of the robot's file's, by joint; empty: it has none.
   std::vector<double> springs;  // N m/rad
   std::vector<hal::TorqueLoopGains> torque_loop;
 };
+// The ground as it is in the simulation and as the controller believes it; level if the text does
+// not say.
+struct Grounds {
+  model::Terrain truth, belief;
+};
+Grounds grounds_of(const std::string& setup_text);
 // Gives the robot of the log the actuators of its world: LoadOptions::world of a replay.
 std::function<void(model::RobotDescription&, core::Diagnostics&)> actuators_of(
     const RunSetup& setup);

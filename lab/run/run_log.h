@@ -66,6 +66,7 @@ struct LogSource {
   std::string command;                                   // as it was typed, for people
   double friction = 0.0;                                 // of the ground; 0: unknown
   bool elastic = false;                                  // series-elastic actuators
+  model::Terrain terrain;            // of the simulation; the settings have the believed one
   bool own_actuators = false;        // the world has actuators in the place of the robot's
   bool aids = false;                 // the world has external aids
   bool sensor_errors = false;        // the world's sensors have errors

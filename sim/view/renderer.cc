@@ -1,6 +1,7 @@
 // MuJoCo's renderer without a window; see renderer.h.
 #include "sim/view/renderer.h"
 
+#include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
@@ -43,9 +44,23 @@ void add_arrow(mjvScene& scene, const FilmArrow& arrow) {
   geom.size[2] *= 2.0F;  // MuJoCo draws an arrow half as long as its connector
 }
 
+std::string boxes_xml(const model::Terrain& terrain) {
+  std::string xml;
+  for (const model::TerrainPiece& box : terrain.boxes) {
+    const auto& R = box.R_WP;
+    xml += fmt::format(
+        "<geom type=\"box\" pos=\"{} {} {}\" size=\"{} {} {}\" xyaxes=\"{} {} {} {} {} {}\" "
+        "rgba=\"0.62 0.66 0.70 1\" contype=\"0\" conaffinity=\"0\"/>\n",
+        box.centre[0], box.centre[1], box.centre[2], box.half[0], box.half[1], box.half[2], R[0],
+        R[3], R[6], R[1], R[4], R[7]);
+  }
+  return xml;
+}
+
 }  // namespace
 
-std::string film_scene(const std::string& mjcf, FilmQuality quality) {
+std::string film_scene(const std::string& mjcf, FilmQuality quality,
+                       const model::Terrain& terrain) {
   const bool fine = quality == FilmQuality::fine;
   return std::string(R"(<mujoco model="film">
   <compiler autolimits="true"/>
@@ -73,7 +88,8 @@ std::string film_scene(const std::string& mjcf, FilmQuality quality) {
            diffuse="0.16 0.18 0.22" specular="0 0 0" castshadow="false"/>
     <geom name="film_floor" type="plane" size="0 0 0.05" material="film_floor" contype="0"
           conaffinity="0"/>
-  </worldbody>
+)" + boxes_xml(terrain) +
+         R"(  </worldbody>
 </mujoco>
 )";
 }
@@ -87,11 +103,15 @@ struct FilmRenderer::Impl {
   mjvCamera camera{};
   mjrContext render{};
   mjrRect viewport{};
+  bool level = true;  // no terrain
   int free_joint = -1;
   std::vector<std::uint8_t> bottom_up;
 
-  Impl(const std::string& mjcf, int width, int height, FilmQuality quality)
-      : model(model::compile_mjcf(film_scene(mjcf, quality), mjcf)), viewport{0, 0, width, height} {
+  Impl(const std::string& mjcf, int width, int height, FilmQuality quality,
+       const model::Terrain& terrain)
+      : model(model::compile_mjcf(film_scene(mjcf, quality, terrain), mjcf)),
+        viewport{0, 0, width, height},
+        level(terrain.boxes.empty()) {
     model->vis.global.offwidth = width;
     model->vis.global.offheight = height;
     data.reset(mj_makeData(model.get()));
@@ -129,6 +149,8 @@ struct FilmRenderer::Impl {
     camera.lookat[0] = data->xpos[3 * body];
     camera.lookat[1] = data->xpos[3 * body + 1];
     camera.lookat[2] = 0.41 * kViewHeight;
+    // On terrain a robot may stand higher.
+    if (!level) camera.lookat[2] = std::max(camera.lookat[2], data->xpos[3 * body + 2] - 0.1);
     camera.distance = 0.5 * kViewHeight / std::tan(half_angle);
     camera.azimuth = kCameraAzimuth;
     camera.elevation = kCameraElevation;
@@ -156,11 +178,12 @@ struct FilmRenderer::Impl {
   }
 };
 
-FilmRenderer::FilmRenderer(const std::string& mjcf, int width, int height, FilmQuality quality) {
+FilmRenderer::FilmRenderer(const std::string& mjcf, int width, int height, FilmQuality quality,
+                           const model::Terrain& terrain) {
   if (!std::filesystem::is_regular_file(mjcf)) {
     throw std::runtime_error("cannot render '" + mjcf + "': no such file");
   }
-  impl_ = std::make_unique<Impl>(mjcf, width, height, quality);
+  impl_ = std::make_unique<Impl>(mjcf, width, height, quality, terrain);
 }
 FilmRenderer::~FilmRenderer() = default;
 FilmRenderer::FilmRenderer(FilmRenderer&&) noexcept = default;

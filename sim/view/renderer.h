@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/terrain.h"
 #include "sim/view/image.h"
 
 namespace footfall::sim {
@@ -32,10 +33,10 @@ enum class FilmQuality { fine, fast };
 
 class FilmRenderer {
  public:
-  // mjcf: path of a robot's model; a floor, a sky and lights are added. Throws std::runtime_error
-  // with one sentence if the model or EGL is not available.
+  // mjcf: path of a robot's model; a floor with its terrain, a sky and lights are added. Throws
+  // std::runtime_error with one sentence if the model or EGL is not available.
   FilmRenderer(const std::string& mjcf, int width, int height,
-               FilmQuality quality = FilmQuality::fine);
+               FilmQuality quality = FilmQuality::fine, const model::Terrain& terrain = {});
   ~FilmRenderer();
   FilmRenderer(FilmRenderer&&) noexcept;
   FilmRenderer& operator=(FilmRenderer&&) noexcept;
@@ -61,6 +62,7 @@ class FilmRenderer {
 Image film_strip(std::span<const Image> pictures, int columns);
 
 // The robot of the file `mjcf` on a checkered floor under a light sky, as MJCF.
-std::string film_scene(const std::string& mjcf, FilmQuality quality);
+std::string film_scene(const std::string& mjcf, FilmQuality quality,
+                       const model::Terrain& terrain = {});
 
 }  // namespace footfall::sim
