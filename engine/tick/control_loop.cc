@@ -115,7 +115,7 @@ void ControlLoop::compute() noexcept {
   faults_.take(swings_.check(machine_->control_spec(), estimate_.contact, machine_->stepping()),
                *machine_);
   faults_.take(slips_.check(machine_->control().primary, model_, controller_.result()), *machine_);
-  faults_.take(safety_.filter(commands_, outside_.limit_steps()), *machine_);
+  faults_.take(safety_.filter(commands_, sensors_, outside_.limit_steps()), *machine_);
   sensing_.commanded(commands_);
   writer_.write_control(*machine_, controller_.result(), commands_, safety_.torque_step(),
                         faults_.counters());

@@ -68,7 +68,8 @@ FaultFindings SafetyFilter::check_state(const hal::Sensors& sensors, const TickS
   return findings;
 }
 
-FaultFindings SafetyFilter::filter(hal::Commands& commands, bool limit_steps) noexcept {
+FaultFindings SafetyFilter::filter(hal::Commands& commands, const hal::Sensors& sensors,
+                                   bool limit_steps) noexcept {
   FaultFindings findings;
   torque_step_ = 0.0;
   held_back_ = false;
@@ -80,7 +81,9 @@ FaultFindings SafetyFilter::filter(hal::Commands& commands, bool limit_steps) no
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     double& tau = commands.tau[j];
     if (!finite) tau = 0.0;
-    const double limit = robot_.joints[j].torque_limit;
+    double limit = robot_.joints[j].torque_limit;
+    const double measured = std::copysign(sensors.tau[j], sensors.tau[j] * tau);  // along the command
+    if (robot_.command_limit > 1.0 && measured < limit) limit *= robot_.command_limit;
     if (limit > 0.0 && std::abs(tau) >= limit) {
       findings.add(Fault::torque_limit, {static_cast<int>(j), tau, std::abs(tau) - limit});
       tau = tasks::within_limit(tau, limit);

@@ -36,7 +36,8 @@ class SafetyFilter {
   // are 0. The others are held within the joints' limits; steps are counted (the first tick has
   // none). With `limit_steps` no command steps by more than the robot's bound, to the last bit: it
   // follows what was asked for at that rate.
-  FaultFindings filter(hal::Commands& commands, bool limit_steps = false) noexcept;
+  FaultFindings filter(hal::Commands& commands, const hal::Sensors& sensors,
+                       bool limit_steps = false) noexcept;
 
   // Goes on from the commands that another filter of the same robot let pass.
   void take_over(const SafetyFilter& old) noexcept {

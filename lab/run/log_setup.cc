@@ -141,6 +141,7 @@ model::Terrain read_terrain(const nlohmann::json& json, const char* key) {
 }
 
 void add_actuators(const model::RobotDescription& robot, nlohmann::ordered_json& json) {
+  json["command_limit"] = robot.command_limit;
   json["springs"] = json["torque_loop"] = nlohmann::ordered_json::array();
   for (const model::JointDescription& joint : robot.joints) json["springs"].push_back(joint.spring);
   for (const hal::TorqueLoopGains& gains : robot.drives.torque_loop) {
@@ -154,6 +155,7 @@ void add_actuators(const model::RobotDescription& robot, nlohmann::ordered_json&
 
 void read_actuators(const nlohmann::json& json, RunSetup& setup) {
   json.at("springs").get_to(setup.springs);
+  setup.command_limit = json.value("command_limit", 1.0);
   for (const auto& row : json.at("torque_loop")) {
     hal::TorqueLoopGains& gains = setup.torque_loop.emplace_back();
     gains.type = static_cast<hal::TorqueLoopGains::Type>(row.at(0).get<int>());
@@ -170,8 +172,9 @@ void read_actuators(const nlohmann::json& json, RunSetup& setup) {
 std::function<void(model::RobotDescription&, core::Diagnostics&)> actuators_of(
     const RunSetup& setup) {
   if (setup.springs.empty()) return {};
-  return [springs = setup.springs, loops = setup.torque_loop](model::RobotDescription& robot,
-                                                              core::Diagnostics&) {
+  return [springs = setup.springs, loops = setup.torque_loop, limit = setup.command_limit](
+             model::RobotDescription& robot, core::Diagnostics&) {
+    robot.command_limit = limit;
     for (std::size_t j = 0; j < robot.joints.size() && j < springs.size(); ++j) {
       robot.joints[j].spring = springs[j];
     }

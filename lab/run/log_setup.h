@@ -41,6 +41,7 @@ struct RunSetup {
   model::Terrain terrain;  // of the simulation
   // Actuators of the world in the place of the robot's file's, by joint; empty: it has none.
   std::vector<double> springs;  // N m/rad
+  double command_limit = 1.0;   // model::RobotDescription::command_limit
   std::vector<hal::TorqueLoopGains> torque_loop;
 };
 // The ground as it is in the simulation and as the controller believes it; level if the text does

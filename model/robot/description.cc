@@ -24,7 +24,7 @@ int find_named(const std::vector<Named>& list, std::string_view name) {
 std::vector<double> RobotDescription::torque_limits() const {
   std::vector<double> limits;
   for (const JointDescription& joint : joints) {
-    limits.push_back(joint.torque_limit > 0.0 ? joint.torque_limit
+    limits.push_back(joint.torque_limit > 0.0 ? command_limit * joint.torque_limit
                                               : std::numeric_limits<double>::infinity());
   }
   return limits;

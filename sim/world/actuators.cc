@@ -96,18 +96,26 @@ void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnosti
       core::check_keys(*loop, model::kTorqueLoopKeys, diagnostics);
     }
   }
+  if (const YamlNode* const limit = node.find("command_limit")) {
+    actuators.command_limit =
+        core::read_bounded(*limit, core::kNone, 1.0, 10.0, diagnostics, "100 % to 1000 %")
+            .value_or(actuators.command_limit);
+    actuators.elastic_keys.push_back({"command_limit", limit->mark});
+  }
   keep("spring", read_change, "a change such as \"+3 %\", or one by joint", actuators.spring);
   keep("flexible", read_stiffness, "a stiffness, or one by joint", actuators.flexible);
 }
 
 bool changes_robot(const ActuatorSettings& actuators) {
   return actuators.model == ActuatorModel::series_elastic &&
-         !(actuators.stiffness.node.is_null() && actuators.torque_loop.node.is_null());
+         !(actuators.stiffness.node.is_null() && actuators.torque_loop.node.is_null() &&
+           actuators.command_limit == 1.0);
 }
 
 void apply_actuators(const ActuatorSettings& actuators, model::RobotDescription& robot,
                      Diagnostics& diagnostics) {
   if (!changes_robot(actuators)) return;
+  robot.command_limit = actuators.command_limit;
   const std::vector<double> springs =
       by_joint(actuators.stiffness, read_stiffness, robot, diagnostics);
   for (std::size_t j = 0; j < springs.size(); ++j) {

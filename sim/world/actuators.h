@@ -26,6 +26,7 @@ struct ActuatorSettings {
   double deflection_resolution = 0.0;  // rad, of the springs' encoders
   ByJoint spring;                      // relative change of the true springs
   ByJoint flexible;                    // N m/rad, stiffness of links
+  double command_limit = 1.0;          // of commands, over the joints' limits of torque
   ByJoint stiffness;                   // N m/rad, of springs and drives in the place of the robot's
   ByJoint torque_loop;                 // gains of the drives in the place of the robot's: their map
   core::Mark mark;                     // position of `model`, else of the section

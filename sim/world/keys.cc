@@ -135,6 +135,10 @@ constexpr KeySpec kActuatorsRows[] = {
     key("torque_loop", map_of(model::kTorqueLoopKeys),
         "series_elastic: the drives' gains in the place of those of the robot's file, all of them")
         .otherwise("the robot's"),
+    key("command_limit", quantity(kNone, "a part"),
+        "series_elastic: of commanded torques, as a part of the joints' limits; above 100 % these "
+        "limit the measured torques: for torque loops that deliver less than they are told")
+        .otherwise("100 %"),
     key("flexible", by_axis(quantity(kTorque, "a stiffness")),
         "series_elastic: links that bend about their joint's axis, behind its encoder: stiffness, "
         "for all joints or by joint")

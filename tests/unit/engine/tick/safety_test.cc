@@ -23,7 +23,7 @@ TEST_F(Safety, OneTorqueThatIsNotFiniteMakesAllZeroAndIsReported) {
   hal::Commands commands;
   commands.tau = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                   -std::numeric_limits<double>::infinity(), 1.0};
-  const engine::FaultFindings findings = filter.filter(commands);
+  const engine::FaultFindings findings = filter.filter(commands, hal::Sensors{});
   EXPECT_TRUE(findings.has(Fault::non_finite));
   EXPECT_FALSE(findings.has(Fault::torque_limit));
   EXPECT_EQ(commands.tau[0], 0.0);
@@ -35,7 +35,7 @@ TEST_F(Safety, OneTorqueThatIsNotFiniteMakesAllZeroAndIsReported) {
 TEST_F(Safety, TorquesAreClampedToEachJointsOwnLimit) {
   hal::Commands commands;
   commands.tau = {70.0, 70.0, -170.0, -70.0, 0.0, 99.9};
-  const engine::FaultFindings findings = filter.filter(commands);
+  const engine::FaultFindings findings = filter.filter(commands, hal::Sensors{});
   EXPECT_TRUE(findings.has(Fault::torque_limit));
   const engine::FaultPlace& worst = findings.place(Fault::torque_limit);
   EXPECT_EQ(worst.joint, 2);  // asked for 70 Nm too much, the others for 20
@@ -45,24 +45,49 @@ TEST_F(Safety, TorquesAreClampedToEachJointsOwnLimit) {
   for (std::size_t j = 0; j < 6; ++j) EXPECT_EQ(commands.tau[j], wanted[j]) << j;
 }
 
+// Torque loops that deliver 40 % of what they are told: the limit holds for what they deliver.
+TEST_F(Safety, ALimitOfMeasuredTorquesLetsCommandsGoBeyondUntilItIsReached) {
+  robot.command_limit = 2.5;
+  hal::Commands commands;
+  hal::Sensors sensors;
+  sensors.tau[0] = 40.0;
+  commands.tau[0] = 100.0;
+  EXPECT_FALSE(filter.filter(commands, sensors).has(Fault::torque_limit));
+  EXPECT_EQ(commands.tau[0], 100.0);
+  commands.tau[0] = 130.0;
+  EXPECT_TRUE(filter.filter(commands, sensors).has(Fault::torque_limit));
+  EXPECT_EQ(commands.tau[0], 125.0);
+  sensors.tau[0] = 50.0;
+  commands.tau[0] = 125.0;
+  EXPECT_TRUE(filter.filter(commands, sensors).has(Fault::torque_limit));
+  EXPECT_EQ(commands.tau[0], 50.0);
+  sensors.tau[0] = -50.0;  // the other way: free to come back
+  commands.tau[0] = 100.0;
+  filter.filter(commands, sensors);
+  EXPECT_EQ(commands.tau[0], 100.0);
+  sensors.tau[0] = std::numeric_limits<double>::quiet_NaN();
+  filter.filter(commands, sensors);
+  EXPECT_EQ(commands.tau[0], 50.0);
+}
+
 TEST_F(Safety, TheFirstTickHasNoStepAndLaterOnesAreOfWhatIsSent) {
   hal::Commands commands;
   commands.tau[0] = 40.0;
-  EXPECT_FALSE(filter.filter(commands).any());
+  EXPECT_FALSE(filter.filter(commands, hal::Sensors{}).any());
   EXPECT_EQ(filter.torque_step(), 0.0);
   commands.tau[0] = 44.9;
-  EXPECT_FALSE(filter.filter(commands).has(Fault::torque_step));
+  EXPECT_FALSE(filter.filter(commands, hal::Sensors{}).has(Fault::torque_step));
   EXPECT_NEAR(filter.torque_step(), 4.9, 1e-12);
   commands.tau[0] = 500.0;  // clamped to 50: a step of 5.1
-  EXPECT_TRUE(filter.filter(commands).has(Fault::torque_step));
+  EXPECT_TRUE(filter.filter(commands, hal::Sensors{}).has(Fault::torque_step));
   EXPECT_NEAR(filter.torque_step(), 5.1, 1e-12);
   commands.tau = {50.0, 6.0, -8.0};  // the largest of two steps, with its sign
-  const engine::FaultPlace place = filter.filter(commands).place(Fault::torque_step);
+  const engine::FaultPlace place = filter.filter(commands, hal::Sensors{}).place(Fault::torque_step);
   EXPECT_EQ(place.joint, 2);
   EXPECT_EQ(place.value, -8.0);
-  filter.filter(commands);
+  filter.filter(commands, hal::Sensors{});
   commands.tau[0] = 50.0;
-  EXPECT_FALSE(filter.filter(commands).has(Fault::torque_step));
+  EXPECT_FALSE(filter.filter(commands, hal::Sensors{}).has(Fault::torque_step));
   EXPECT_EQ(filter.torque_step(), 0.0);
 }
 
