@@ -36,6 +36,7 @@ MujocoBackend::MujocoBackend(const model::RobotDescription& robot, const WorldDe
   model_ = model::compile_mjcf(scene_xml(robot, world), robot.model_path);
   model::use_own_settings(*model_);
   data_ = mj_makeData(model_);
+  add_sliders();
   tilt_axes();
   mj_forward(model_, data_);
   for (const model::JointDescription& j : robot.joints) {
@@ -105,6 +106,19 @@ void MujocoBackend::refuse_stiff_springs() {
                              robot_.joints[j].name + "' is too stiff for the physics step: " +
                              std::to_string(spring) + " Nm/rad, expected at most " +
                              std::to_string(most) + " (or a larger physics: timestep_divisor)");
+  }
+}
+
+// Inertia on the diagonal of the free joint's translation, whose velocity is that of the base's
+// origin in world axes: a mass that moves with it along an axis.
+void MujocoBackend::add_sliders() {
+  for (const model::BodySprings& aid : world_.constraints) {
+    if (aid.slides == std::array<double, 3>{}) continue;
+    const int body = find_body(aid.body.name);
+    if (body <= 0 || model_->body_dofnum[body] != 6) continue;  // refused: check_springs()
+    for (int k = 0; k < 3; ++k) {
+      model_->dof_armature[model_->body_dofadr[body] + k] += aid.slides[at(k)];
+    }
   }
 }
 
@@ -260,6 +274,7 @@ PhysicsFacts MujocoBackend::facts() const {
   }
   for (int i = 0; i < model_->nv; ++i) {
     f.damping_max = std::max(f.damping_max, model_->dof_damping[i]);
+    if (model_->jnt_type[model_->dof_jntid[i]] == mjJNT_FREE) continue;  // sliders of the world
     f.armature_max = std::max(f.armature_max, model_->dof_armature[i]);
   }
   return f;

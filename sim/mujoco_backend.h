@@ -93,6 +93,7 @@ class MujocoBackend final : public hal::Hardware {
   void sense_contacts(hal::Sensors& sensors) noexcept;
   void find_truth(const hal::Sensors& sensors) noexcept;
   std::int64_t warnings() const noexcept;
+  void add_sliders();
   void tilt_axes();
   void refuse_stiff_springs();
   void place_at_posture();

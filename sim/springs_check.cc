@@ -23,6 +23,7 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -167,7 +168,17 @@ void check_springs(const WorldDescription& world, const std::vector<model::BodyS
   if (world.constraints.empty() && !own_holds) return;  // spares compiling the model
   SpringsCheck check(world, robot, diagnostics);
   Sums sums;
-  for (const model::BodySprings& aid : world.constraints) check.add(aid, sums);
+  for (const model::BodySprings& aid : world.constraints) {
+    check.add(aid, sums);
+    const bool slides = aid.slides != std::array<double, 3>{};
+    if (!slides || aid.body.name.empty() || aid.body.name == robot.floating_base) continue;
+    core::Mark mark = aid.slides_mark;
+    mark.file = diagnostics.add_file(aid.body.file);
+    diagnostics.error(mark, "unsupported",
+                      fmt::format("'slides' acts on the robot's floating base alone: expected "
+                                  "'body: {}', got '{}'",
+                                  robot.floating_base, aid.body.name));
+  }
   for (const model::BodySprings& hold : holds) {
     if (!hold.has_own_values()) continue;
     Sums with = sums;

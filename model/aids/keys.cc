@@ -76,6 +76,10 @@ constexpr KeySpec kConstraintRows[] = {
     key("pitch", map_of(kTurnSpringKeys), "likewise about y"),
     key("yaw", map_of(kTurnSpringKeys), "likewise about z"),
     key("rope", map_of(kRopeKeys), "a rope between a point of the body and a fixed place"),
+    key("slides", by_axis(quantity(kMass, "a mass")),
+        "mass that is moved along x, y, z of the world with the origin of the robot's floating "
+        "base and has no weight, as of a slider on a rail; unknown to the controller")
+        .otherwise("[0 kg, 0 kg, 0 kg]"),
 };
 
 constexpr WordSpec kAxisRows[] = {
@@ -115,7 +119,7 @@ constinit const core::KeyTable kConstraintKeys = {
         "An external aid: springs between a body and the world. An axis that is not named is "
         "free.",
     .keys = kConstraintRows,
-    .one_of = {"x y z roll pitch yaw rope"}};
+    .one_of = {"x y z roll pitch yaw rope slides"}};
 constinit const core::KeyTable kRopeKeys = {
     .id = "rope",
     .doc = "A rope between a point of the body and a fixed place: it pulls while it is taut.",

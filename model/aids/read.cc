@@ -86,6 +86,15 @@ class SpringReader {
     }
   }
 
+  void read_slides(const YamlNode& node, BodySprings& out) const {
+    out.slides_mark = node.mark;
+    const auto values = core::read_vector3(node, core::kMass, diagnostics_);
+    out.slides = values.value_or(out.slides);
+    if (std::ranges::any_of(out.slides, [](double mass) { return mass < 0.0; })) {
+      diagnostics_.error(node.mark, "out-of-range", "expected masses of 0 kg or more");
+    }
+  }
+
   // Named axes that have no values of their own.
   void read_named_axes(const YamlNode& node, BodySprings& out) const {
     if (!core::expect_sequence(node, "a list of axes: [x, y, yaw]", diagnostics_)) return;
@@ -199,13 +208,14 @@ std::vector<BodySprings> read_constraints(const YamlNode& node, Diagnostics& dia
     }
     reader.read_axes(entry.value, aid);
     if (const YamlNode* rope = entry.value.find("rope")) reader.read_rope(*rope, aid);
+    if (const YamlNode* slides = entry.value.find("slides")) reader.read_slides(*slides, aid);
     const auto named = [&](std::string_view axis) {
       return core::has_nearly(entry.value, axis) || entry.value.find(axis) != nullptr;
     };
-    if (std::ranges::none_of(kSpringAxes, named) && !named("rope")) {
+    if (std::ranges::none_of(kSpringAxes, named) && !named("rope") && !named("slides")) {
       diagnostics.error(entry.value.mark, "missing-key",
-                        "expected at least one of x, y, z, roll, pitch, yaw or rope: an axis that "
-                        "is not named is free");
+                        "expected at least one of x, y, z, roll, pitch, yaw, rope or slides: an "
+                        "axis that is not named is free");
     }
   }
   return list;

@@ -48,6 +48,10 @@ struct BodySprings {
   NamedLink body;
   std::array<std::optional<AxisSpring>, 6> axes;  // by kSpringAxes; nullopt: free
   std::optional<Rope> rope;
+  // kg, of what slides along x y z of the world with the origin of the robot's floating base:
+  // inertia without weight. No hold has it.
+  std::array<double, 3> slides{};
+  core::Mark slides_mark;
   bool all = false;  // a hold that names no axes: every axis, of a body that is no root x y z
 
   // Whether an axis has a stiffness or a damping of its own, which may be unstable.

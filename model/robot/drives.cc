@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 
 #include "core/yaml/glob.h"
 #include "core/yaml/value_reader.h"
@@ -16,15 +17,35 @@ namespace {
 using core::Diagnostics;
 using core::YamlNode;
 
+std::optional<double> read_value(const YamlNode& value, const TorqueLoopKey& key,
+                                 hal::TorqueLoopGains::Type type, Diagnostics& diagnostics) {
+  return core::read_bounded(value, key.dimension(type), 0.0,
+                            std::numeric_limits<double>::infinity(), diagnostics, key.noun(type));
+}
+
+// Type and damping of all joints' loops; nullopt: not a map.
+std::optional<hal::TorqueLoopGains> read_law(const YamlNode& node, Diagnostics& diagnostics) {
+  if (!core::expect_map(node, "{type: direct, p: NUMBER, d: DAMPING}", diagnostics)) return {};
+  core::check_keys(node, kTorqueLoopKeys, diagnostics);
+  hal::TorqueLoopGains all;
+  if (const YamlNode* type = node.find("type")) {
+    const auto choice = core::read_choice(*type, kTorqueLoopTypes, diagnostics);
+    all.type = static_cast<hal::TorqueLoopGains::Type>(choice.value_or(0));
+  }
+  if (const YamlNode* damps = node.find("damps")) {
+    const auto choice = core::read_choice(*damps, kTorqueLoopDampings, diagnostics);
+    all.damps = static_cast<hal::TorqueLoopGains::Damping>(choice.value_or(0));
+  }
+  return all;
+}
+
 // A gain of all joints: one number, or a map by joint; joints without a value keep theirs.
 void read_gain(const YamlNode& node, const TorqueLoopKey& key, RobotDescription& robot,
                Diagnostics& diagnostics) {
   std::vector<hal::TorqueLoopGains>& loops = robot.drives.torque_loop;
   const auto read = [&](const YamlNode& value, std::size_t joint) {
     hal::TorqueLoopGains& gains = loops[joint];
-    const auto number = core::read_bounded(value, key.dimension(gains.type), 0.0,
-                                           std::numeric_limits<double>::infinity(), diagnostics,
-                                           key.noun(gains.type));
+    const auto number = read_value(value, key, gains.type, diagnostics);
     gains.*key.member = number.value_or(gains.*key.member);
     return number.has_value();
   };
@@ -71,20 +92,24 @@ void read_actuator(const YamlNode& sea, JointDescription& joint, Diagnostics& di
 }
 
 void read_torque_loop(const YamlNode& node, RobotDescription& robot, Diagnostics& diagnostics) {
-  if (!core::expect_map(node, "{type: direct, p: NUMBER, d: DAMPING}", diagnostics)) return;
-  core::check_keys(node, kTorqueLoopKeys, diagnostics);
-  hal::TorqueLoopGains all;
-  if (const YamlNode* type = node.find("type")) {
-    const auto choice = core::read_choice(*type, kTorqueLoopTypes, diagnostics);
-    all.type = static_cast<hal::TorqueLoopGains::Type>(choice.value_or(0));
-  }
-  if (const YamlNode* damps = node.find("damps")) {
-    const auto choice = core::read_choice(*damps, kTorqueLoopDampings, diagnostics);
-    all.damps = static_cast<hal::TorqueLoopGains::Damping>(choice.value_or(0));
-  }
-  robot.drives.torque_loop.assign(robot.joints.size(), all);
+  const auto law = read_law(node, diagnostics);
+  if (!law) return;
+  robot.drives.torque_loop.assign(robot.joints.size(), *law);
   for (const TorqueLoopKey& key : kTorqueLoopGainKeys) {
     if (const YamlNode* value = node.find(key.name)) read_gain(*value, key, robot, diagnostics);
+  }
+}
+
+void check_torque_loop(const YamlNode& node, Diagnostics& diagnostics) {
+  const auto law = read_law(node, diagnostics);
+  if (!law) return;
+  for (const TorqueLoopKey& key : kTorqueLoopGainKeys) {
+    const YamlNode* const value = node.find(key.name);
+    if (value == nullptr) continue;
+    if (!value->is_map()) read_value(*value, key, law->type, diagnostics);
+    for (const core::YamlEntry& entry : value->entries) {
+      read_value(entry.value, key, law->type, diagnostics);
+    }
   }
 }
 

@@ -18,6 +18,8 @@ void read_actuator(const core::YamlNode& sea, JointDescription& joint,
 // `torque_loop:` in the place of the robot's; a world may have one, too. Needs the robot's joints.
 void read_torque_loop(const core::YamlNode& node, RobotDescription& robot,
                       core::Diagnostics& diagnostics);
+// What of it can be judged without a robot: all but the names of joints.
+void check_torque_loop(const core::YamlNode& node, core::Diagnostics& diagnostics);
 // Needs the robot's joints.
 void read_drives(const core::YamlNode& node, RobotDescription& robot,
                  core::Diagnostics& diagnostics);

@@ -10,7 +10,6 @@
 
 #include "core/yaml/value_reader.h"
 #include "model/robot/drives.h"
-#include "model/robot/torque_loop.h"
 #include "sim/world/by_joint.h"
 #include "sim/world/keys.h"
 
@@ -92,9 +91,7 @@ void read_actuators(const YamlNode& node, ActuatorSettings& actuators, Diagnosti
   if (const YamlNode* loop = node.find("torque_loop")) {
     actuators.torque_loop = {*loop, diagnostics.file(loop->mark.file)};
     actuators.elastic_keys.push_back({"torque_loop", loop->mark});
-    if (core::expect_map(*loop, "{type: direct, p: NUMBER, d: DAMPING}", diagnostics)) {
-      core::check_keys(*loop, model::kTorqueLoopKeys, diagnostics);
-    }
+    model::check_torque_loop(*loop, diagnostics);
   }
   if (const YamlNode* const limit = node.find("command_limit")) {
     actuators.command_limit =

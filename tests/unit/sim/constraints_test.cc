@@ -93,10 +93,10 @@ TEST_F(Constraints, MistakesAreErrorsAtTheirPlace) {
   EXPECT_EQ(problems(),
             "2:14: error: expected external aids by name: {NAME: {body: BODY, z: {stiffness: "
             "...}}}, got a list\n");
-  EXPECT_EQ(
-      problems_of("{body: torso}"),
-      "2:20: error: expected at least one of x, y, z, roll, pitch, yaw or rope: an axis that is "
-      "not named is free\n");
+  EXPECT_EQ(problems_of("{body: torso}"),
+            "2:20: error: expected at least one of x, y, z, roll, pitch, yaw, rope or slides: an "
+            "axis that is "
+            "not named is free\n");
   EXPECT_EQ(problems_of("{body: torso, rope: {to: [0 m, 0 m, 4 m], stiffness: 1 N/m}}"),
             "2:40: error: the key 'length' is missing\n");
   EXPECT_EQ(problems_of("{body: torso, rope: {to: [0 m, 4 m], length: 1 m, stiffness: 1 N/m}}"),

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "hal/actuators/drive.h"
 #include "sim/mujoco_backend.h"
+#include "sim/springs_check.h"
 #include "sim/world/description.h"
 #include "tests/support/hume.h"
 
@@ -163,6 +165,88 @@ TEST_F(TerrainWorldTest, MalformedTerrainIsToldAtItsPlace) {
   EXPECT_EQ(problem_of("terrain_belief: {error: {tilt: 40 deg}}\n"),
             "2:32: error: expected an angle within 0.5 rad, 0 to 0.5, got '40 deg'\n");
   EXPECT_NE(problem_of("terrain_belief: flatt\n").find("did you mean"), std::string::npos);
+}
+
+// A world's actuators take the place of the robot's before anything uses them.
+TEST_F(TerrainWorldTest, AWorldsSpringsAndTorqueLoopsTakeThePlaceOfTheRobots) {
+  const auto world = load(
+      "actuators:\n  model: series_elastic\n  stiffness: {\"*knee\": 300 Nm/rad}\n"
+      "  torque_loop: {type: direct, p: 0.8, forward: 0, damps: spring, d: 11 Nm s/rad}\n");
+  ASSERT_EQ(problems.to_string(), "");
+  model::RobotDescription own = robot;
+  sim::apply_actuators(world.actuators, own, problems);
+  ASSERT_EQ(problems.to_string(), "");
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const bool knee = robot.joints[j].name.ends_with("knee");
+    EXPECT_EQ(own.joints[j].spring, knee ? 300.0 : robot.joints[j].spring);
+    const hal::TorqueLoopGains& gains = own.drives.torque_loop[j];
+    EXPECT_EQ(gains.p, 0.8);
+    EXPECT_EQ(gains.forward, 0.0);
+    EXPECT_EQ(gains.damping, 11.0);
+    EXPECT_EQ(gains.i, 0.0);
+    EXPECT_EQ(gains.damps, hal::TorqueLoopGains::Damping::spring);
+  }
+  const hal::DriveSettings drives = sim::drive_settings(world.actuators, own, 2);
+  EXPECT_EQ(drives.joints[2].actuator.spring, 300.0);
+}
+
+// p (tau_cmd - tau) = tau at rest: of the command 0.8/1.8 arrives.
+TEST_F(TerrainWorldTest, WithoutFeedForwardAPartOfTheCommandArrives) {
+  auto world = load(
+      "actuators:\n  model: series_elastic\n  stiffness: 415 Nm/rad\n"
+      "  torque_loop: {type: direct, p: 0.8, forward: 0, damps: spring, d: 11 Nm s/rad}\n"
+      "constraints: {hoist: {body: torso, z: {stiffness: 20 kN/m, at: 3 m}}}\n");
+  model::RobotDescription own = robot;
+  sim::apply_actuators(world.actuators, own, problems);
+  hal::SeriesElasticDrive drive(sim::drive_settings(world.actuators, own, 2));
+  const std::vector<double> still(own.joints.size(), 0.0);
+  std::vector<double> torques = still;
+  drive.start(still, still);
+  drive.command(std::vector<double>(own.joints.size(), 18.0));
+  for (int k = 0; k < 3000; ++k) {
+    drive.place(still);
+    drive.advance(still, torques);
+  }
+  for (const double torque : torques) EXPECT_NEAR(torque, 8.0, 1e-3);
+}
+
+TEST_F(TerrainWorldTest, AnUnknownJointOfATorqueLoopIsToldAtItsPlace) {
+  const auto world = load(
+      "actuators: {model: series_elastic, torque_loop: {type: direct, p: 1, d: {\"*kne\": 11 Nm "
+      "s/rad}}}\n");
+  sim::apply_actuators(world.actuators, robot, problems);
+  EXPECT_NE(problems.to_string().find("world.yaml:2:"), std::string::npos);
+}
+
+// In free flight gravity acts on the robot alone, and what slides has to be accelerated with it:
+// the base of a rigid robot would fall with g m/(m + M); the legs bend, so that only the total
+// momentum tells: m v_com + M v_base = m g t.
+TEST_F(TerrainWorldTest, WhatSlidesHasInertiaAndNoWeight) {
+  const auto world = load(
+      "constraints: {rail: {body: torso, slides: [0 kg, 0 kg, 5 kg]}}\nstart: {height: 5 m}\n");
+  ASSERT_EQ(problems.to_string(), "");
+  sim::MujocoBackend backend(robot, world);
+  backend.start();
+  constexpr int kTicks = 150;
+  for (int k = 0; k < kTicks; ++k) backend.write({});
+  mj_subtreeVel(backend.model(), backend.data());
+  mj_forward(backend.model(), backend.data());
+  mj_subtreeVel(backend.model(), backend.data());
+  const int torso = mj_name2id(backend.model(), mjOBJ_BODY, "torso");
+  const double mass = backend.model()->body_subtreemass[torso];
+  const double momentum =
+      mass * backend.data()->subtree_linvel[3 * torso + 2] + 5.0 * backend.data()->qvel[2];
+  // Semi-implicit Euler: the momentum is exact but for the change of the inertia within a step,
+  // of first order in h = 1/3000 s times the rate of the legs.
+  EXPECT_NEAR(momentum, -mass * 9.81 * kTicks / 1500.0, 2e-3 * mass);
+}
+
+TEST_F(TerrainWorldTest, OnlyTheFloatingBaseSlides) {
+  const auto world = load("constraints: {rail: {body: right_shank, slides: [1 kg, 0 kg, 0 kg]}}\n");
+  sim::check_springs(world, {}, robot, problems);
+  EXPECT_NE(problems.to_string().find("error: 'slides' acts on the robot's floating base alone: "
+                                      "expected 'body: torso', got 'right_shank'"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -93,6 +93,39 @@ TEST(PhysicsForces, TheWorldsFrictionCountsWhereItIsLess) {
   EXPECT_THAT(judge(0.3), HasSubstr("at most 0.3 x 98 N = 29 N (friction of the world)"));
 }
 
+// A V of 45 deg under the feet, which stand beside each other: faces fall towards the middle.
+model::Terrain valley() {
+  const double c = std::sqrt(0.5);
+  model::Terrain terrain;
+  for (const double side : {-1.0, 1.0}) {
+    // Turned about x; its face through (0, side 0.5, 0.5), that is through the x axis.
+    model::TerrainPiece box = {{0.0, side * (0.5 + 0.2 * c), 0.5 - 0.2 * c},
+                               {1, 0, 0, 0, c, -side * c, 0, side * c, c},
+                               {1.0, 0.7, 0.2}};
+    terrain.boxes.push_back(box);
+  }
+  return terrain;
+}
+
+// By hand: with half the weight W on each foot and a tension T the ground pushes a foot with W up
+// and T inwards, (W - T)/sqrt 2 along a face of 45 deg and (W + T)/sqrt 2 into it. With mu = 0.9
+// it stands from T = W/19 on.
+TEST(PhysicsForces, OnSlopesTheConeIsAboutTheirNormals) {
+  const auto judge = [](const std::string& tension) {
+    core::Diagnostics diagnostics, findings;
+    const auto behavior = behaviors::load_behavior_text(squeezing(tension), "b.yaml",
+                                                        options_for_tests(), diagnostics);
+    for (int f = 0; f < diagnostics.file_count(); ++f) findings.add_file(diagnostics.file(f));
+    behaviors::check_physics(*behavior, findings, {.terrain = valley()});
+    return findings.to_string();
+  };
+  EXPECT_THAT(judge("3 N"), HasSubstr("with internal force 'tension' of 3 N at each foot the robot "
+                                      "cannot stand where the world starts it, "));
+  EXPECT_THAT(judge("3 N"), HasSubstr("would slip: 67 N along the ground, at most 0.9 x 7"));
+  EXPECT_THAT(judge("50 N"), testing::Not(HasSubstr("error")));
+  EXPECT_THAT(judge("98 N"), testing::Not(HasSubstr("error")));  // no friction needed
+}
+
 TEST(PhysicsContacts, SurfacesAreRefusedByName) {
   const auto flat = with_contacts(testing::TempDir(), "{site: right_foot, type: surface}",
                                   "{site: left_foot, type: fixed}");
