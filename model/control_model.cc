@@ -147,6 +147,11 @@ ControlModel::ControlModel(const RobotDescription& robot, const ModelDeviation& 
   for (int k = 0; k < 3; ++k) com_.jacobian[at(k * nv_ + k)] = 1.0;
   base_.jacobian.assign(cells, 0.0);
   bias_.assign(static_cast<std::size_t>(nv_), 0.0);
+  held_scratch_.assign(2 * cells, 0.0);
+  for (const HeldAxis& axis : deviation.held) {
+    const int body = require_object(m, robot, mjOBJ_BODY, axis.body, "an external aid");
+    held_.push_back({body, axis.axis, 0.0, std::vector<double>(at(nv_), 0.0)});
+  }
   // Shapes and sites have no part in dynamics, but MuJoCo's kinematics would place each of them
   // at every tick; their places of interest are kept as anchors.
   m->ngeom = m->nsite = m->ncam = m->nlight = 0;
@@ -209,6 +214,19 @@ void ControlModel::update(const State& state) noexcept {
   }
   update_positions();
   update_com_and_base();
+  update_held();
+}
+
+void ControlModel::update_held() noexcept {
+  const mjData* d = mj_->data.get();
+  for (Held& held : held_) {
+    double* const rows = held_scratch_.data();
+    mj_jacBodyCom(mj_->model.get(), mj_->data.get(), rows, rows + 3 * nv_, held.body);
+    std::copy_n(rows + held.axis * nv_, nv_, held.jacobian.data());
+    Vector3 bias{};
+    point_motion(held.body, d->xipos + 3 * held.body, nullptr, bias);
+    held.bias = held.axis < 3 ? bias[at(held.axis)] : d->cacc[6 * held.body + held.axis - 3];
+  }
 }
 
 // Velocity and J̇q̇ of a point fixed to `body` and now at p: v = v_c + ω x r, a = a_c + α x r + ω x v

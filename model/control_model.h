@@ -19,12 +19,21 @@
 
 namespace footfall::model {
 
+// An axis of a body that an external aid holds: 0 to 2, its centre of mass along x y z; 3 to 5, its
+// rotation about them; world axes.
+struct HeldAxis {
+  std::string body;
+  int axis = 0;
+  bool operator==(const HeldAxis&) const = default;
+};
+
 // What the controller believes: of the robot differently from its file, and of the ground.
 struct ModelDeviation {
   double mass_scale = 1.0;                                 // every mass and inertia
   std::map<std::string, double> mass_scales;               // likewise, of single links
   std::map<std::string, std::array<double, 3>> com_shift;  // m, link frame
   Terrain terrain;                                         // as believed; empty: level ground
+  std::vector<HeldAxis> held;                              // known to hold, as constraints
 };
 
 // A 3-row task Jacobian and what goes with it; pointers stay valid for the model's life.
@@ -90,6 +99,12 @@ class ControlModel {
     if (fresh_frame_[static_cast<std::size_t>(index)] == 0) fill_frame(index);
     return frames_[static_cast<std::size_t>(index)];
   }
+  // Axes that external aids hold: rows of a constraint on the acceleration, J q̈ + J̇ q̇ = 0.
+  int held_count() const noexcept { return static_cast<int>(held_.size()); }
+  const double* held_jacobian(int i) const noexcept {
+    return held_[static_cast<std::size_t>(i)].jacobian.data();
+  }
+  double held_bias(int i) const noexcept { return held_[static_cast<std::size_t>(i)].bias; }
   const Kinematics3& com() const noexcept { return com_; }
   // Angular velocity of the floating base, world axes: velocity = ω, bias = J̇_ω q̇.
   const Kinematics3& base_rotation() const noexcept { return base_; }
@@ -128,10 +143,18 @@ class ControlModel {
   void place_points(const RobotDescription& robot);
   void com_from_base_rows() noexcept;
   void update_com_and_base() noexcept;
+  void update_held() noexcept;
   void point_motion(int body, const double* p, std::array<double, 3>* velocity,
                     std::array<double, 3>& bias) const noexcept;
 
+  struct Held {
+    int body = 0, axis = 0;
+    double bias = 0.0;
+    std::vector<double> jacobian;  // nv
+  };
   std::unique_ptr<Mujoco> mj_;
+  std::vector<Held> held_;
+  std::vector<double> held_scratch_;  // 6 x nv
   SensorMounts mounts_;
   int nv_ = 0;
   int contact_count_ = 0;

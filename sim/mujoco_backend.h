@@ -22,10 +22,12 @@ struct mjData_;
 
 namespace footfall::sim {
 
-// A force on a body's centre of mass, constant in world axes while it acts.
+// A force on a body, constant in world axes while it acts.
 struct ActivePush {
   int body = 0;
   std::array<double, 3> force{};  // N, world
+  // Of the body's frame, m, where it acts; nullopt: its centre of mass.
+  std::optional<std::array<double, 3>> point;
   double steps_left = 0.0;        // physics steps; the last one may be a part
 };
 inline constexpr std::size_t kMaxPushes = 32;  // maximum number of simultaneous pushes
@@ -67,7 +69,8 @@ class MujocoBackend final : public hal::Hardware {
 
   // Starts a push on a body's CoM; direction in rad from the robot's heading, 0 forward, pi/2 left.
   // Names were checked by find_body(). False if kMaxPushes are active.
-  bool push(int body, double force, double direction, double duration) noexcept;
+  bool push(int body, double force, double direction, double duration, double elevation = 0.0,
+            const std::optional<std::array<double, 3>>& point = {}) noexcept;
   // Holds a body by springs anchored where it is now; its number for release(), -1 if kMaxHeld are
   // held.
   int hold(int body, const model::BodySprings& springs) noexcept;

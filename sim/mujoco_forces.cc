@@ -32,6 +32,15 @@ void MujocoBackend::apply_forces() noexcept {
     double* force = data_->xfrc_applied + 6 * p.body;
     const double part = std::clamp(p.steps_left, 0.0, 1.0);
     for (std::size_t k = 0; k < 3 && part > 0.0; ++k) force[k] += part * p.force[k];
+    if (p.point && part > 0.0) {
+      update_positions();
+      mjtNum place[3], arm[3], moment[3];
+      mju_rotVecMat(place, p.point->data(), data_->xmat + 9 * p.body);
+      mju_addTo3(place, data_->xpos + 3 * p.body);
+      mju_sub3(arm, place, data_->xipos + 3 * p.body);
+      mju_cross(moment, arm, p.force.data());
+      for (int k = 0; k < 3; ++k) force[3 + k] += part * moment[k];
+    }
     p.steps_left -= 1.0;
     if (p.steps_left <= -1.0) p = {};  // one step later: its force was cleared above
   }
@@ -63,7 +72,9 @@ void MujocoBackend::release(int hold) noexcept {
   held = {};
 }
 
-bool MujocoBackend::push(int body, double force, double direction, double duration) noexcept {
+bool MujocoBackend::push(int body, double force, double direction, double duration,
+                         double elevation,
+                         const std::optional<std::array<double, 3>>& point) noexcept {
   const auto free_slot =
       std::find_if(pushes_.begin(), pushes_.end(), [](const ActivePush& p) { return p.body == 0; });
   if (free_slot == pushes_.end()) return false;
@@ -71,7 +82,10 @@ bool MujocoBackend::push(int body, double force, double direction, double durati
   const double yaw =
       std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
   free_slot->body = body;
-  free_slot->force = {force * std::cos(yaw + direction), force * std::sin(yaw + direction), 0.0};
+  const double level = elevation == 0.0 ? force : force * std::cos(elevation);
+  free_slot->force = {level * std::cos(yaw + direction), level * std::sin(yaw + direction),
+                      force * std::sin(elevation)};
+  free_slot->point = point;
   const double steps = duration / model_->opt.timestep;
   const double whole = std::round(steps);  // of times that are such up to round-off
   free_slot->steps_left = std::abs(steps - whole) < 1e-9 * std::max(whole, 1.0) ? whole : steps;

@@ -143,7 +143,7 @@ void InternalForces::assemble(WboscProblem& problem, const ControlSet& set, std:
       if (!known) static_forces(model_, set.contacts.data(), set.contact_count, rest.data());
       known = true;
       reference = 0.0;
-      for (int k = 0; k < columns; ++k) reference += c.statics * w[k] * rest[at(k)];
+      for (int k = 0; k < 3 * set.contact_count; ++k) reference += c.statics * w[k] * rest[at(k)];
     }
     name_row(problem, row++, c, reference, tick, alone);
   }

@@ -10,7 +10,7 @@ namespace footfall::tasks {
 namespace {
 
 WboscSizes solver_sizes(const model::ControlModel& model, const ControllerSizes& sizes) {
-  return {model.nv(),      model.joint_count(), 3 * sizes.contacts,
+  return {model.nv(),      model.joint_count(), 3 * sizes.contacts + model.held_count(),
           sizes.task_rows, sizes.levels,        internal_rows(sizes.contacts)};
 }
 
@@ -87,6 +87,11 @@ void WholeBodyController::assemble_contacts(WboscProblem& problem,
     const model::Kinematics3& k = model_.point(set.contacts[at(i)]);
     std::copy_n(k.jacobian.data(), 3 * n, problem.Js.data() + 3 * i * n);
     std::copy_n(k.bias.data(), 3, problem.Js_bias.data() + 3 * i);
+  }
+  for (int i = 0; i < model_.held_count(); ++i) {
+    const int row = problem.contact_rows++;
+    std::copy_n(model_.held_jacobian(i), n, problem.Js.data() + row * n);
+    problem.Js_bias[at(row)] = model_.held_bias(i);
   }
 }
 

@@ -109,8 +109,9 @@ lab::ScenarioHooks make_hooks(Backend& backend, hal::SensorFaults& sensors,
   hooks.fault = [&sensors](lab::InjectedFault fault, bool on) { inject(sensors, fault, on); };
   sim::MujocoBackend* mujoco = backend.mujoco;
   if (mujoco == nullptr) return hooks;
-  hooks.push = [mujoco](const std::string& body, double force, double direction, double duration) {
-    return mujoco->push(mujoco->find_body(body), force, direction, duration);
+  hooks.push = [mujoco](const std::string& body, const lab::ScriptedPush& push) {
+    return mujoco->push(mujoco->find_body(body), push.force, push.direction, push.duration,
+                        push.elevation, push.point);
   };
   hooks.hold = [mujoco, &aids](const model::BodySprings& hold) {
     const int number = mujoco->hold(mujoco->find_body(hold.body.name), hold);

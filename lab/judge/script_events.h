@@ -22,9 +22,8 @@ namespace footfall::lab {
 // What only the world around the robot can do. A hook that is missing cannot be asked for: see
 // unsupported().
 struct ScenarioHooks {
-  // A horizontal force on a body for a time (N, rad from the heading, s); false: not now.
-  std::function<bool(const std::string& body, double force, double direction, double duration)>
-      push;
+  // A force on a body for a time; false: not now.
+  std::function<bool(const std::string& body, const ScriptedPush& push)> push;
   // People hold a body where it is; the number of the hold, negative: not now.
   std::function<int(const model::BodySprings& hold)> hold;
   // They let go.

@@ -197,6 +197,10 @@ std::string setup_text(const behaviors::Behavior& behavior, const LogSource& sou
   json["com_shift"] = s.deviation.com_shift;
   json["terrain"] = terrain_json(s.deviation.terrain);
   json["true_terrain"] = terrain_json(source.terrain);
+  json["held"] = nlohmann::json::array();
+  for (const model::HeldAxis& held : s.deviation.held) {
+    json["held"].push_back({held.body, held.axis});
+  }
   if (source.own_actuators) add_actuators(behavior.robot, json["actuators"]);
   json["surface"] = nlohmann::json::array();
   for (const model::SurfaceRamp& ramp : s.surface.ramps) {
@@ -240,6 +244,9 @@ RunSetup read_setup(const std::string& text) {
     json.at("com_shift").get_to(s.deviation.com_shift);
     s.deviation.terrain = read_terrain(json, "terrain");
     setup.terrain = read_terrain(json, "true_terrain");
+    for (const auto& held : json.value("held", nlohmann::json::array())) {
+      s.deviation.held.push_back({held.at(0), held.at(1)});
+    }
     for (const auto& ramp : json.at("surface")) {
       s.surface.ramps.push_back({ramp.at(0), ramp.at(1), ramp.at(2)});
     }

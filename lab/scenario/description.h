@@ -31,12 +31,15 @@ struct Moment {
   std::string event;        // name or prefix (`fault.*`)
 };
 
-// A constant horizontal force on a body's centre of mass.
+// A constant force on a body.
 struct ScriptedPush {
   std::string body;        // empty: the floating base
   double force = 0.0;      // N
   double duration = 0.0;   // s
   double direction = 0.0;  // rad in the heading frame, 0 forward, pi/2 left
+  double elevation = 0.0;  // rad, above the horizontal: pi/2 upwards
+  // Of the body's frame, m, where it acts; nullopt: its centre of mass.
+  std::optional<std::array<double, 3>> point;
 };
 
 enum class InjectedFault : std::uint8_t {

@@ -87,12 +87,17 @@ constexpr KeySpec kMomentRows[] = {
 };
 
 constexpr KeySpec kPushRows[] = {
-    key("body", name_of("a body"), "body whose centre of mass it acts on")
+    key("body", name_of("a body"), "body that it acts on")
         .otherwise("the floating base"),
     key("force", quantity(kForce), "magnitude").required(),
     key("for", quantity(kTime), "duration").required(),
     key("direction", quantity(kNone, "an angle"), "in the heading frame: 0 forward, 90 deg left")
         .otherwise("0 deg"),
+    key("elevation", quantity(kNone, "an angle"),
+        "above the horizontal: 90 deg upwards, -90 deg downwards")
+        .otherwise("0 deg"),
+    key("point", by_axis(quantity(kLength)), "where it acts, in the body's frame")
+        .otherwise("its centre of mass"),
 };
 
 constexpr KeySpec kGoldenRows[] = {
@@ -131,7 +136,7 @@ constinit const core::KeyTable kScriptKeys = {
 constinit const core::KeyTable kMomentKeys = {
     .id = "moment", .doc = "A phase of the run.", .keys = kMomentRows, .one_of = {"step state"}};
 constinit const core::KeyTable kPushKeys = {
-    .id = "push", .doc = "A constant horizontal force on a body.", .keys = kPushRows};
+    .id = "push", .doc = "A constant force on a body.", .keys = kPushRows};
 constinit const core::KeyTable kExpectationKeys = {.id = "expectation",
                                                    .doc = "An expectation.",
                                                    .keys = kExpectationRows,

@@ -147,6 +147,15 @@ ScriptedPush read_push(ScenarioContext& context, const YamlNode& node) {
                                         "an angle (in rad, or with its unit: 90 deg)")
                          .value_or(0.0);
   }
+  if (const YamlNode* elevation = node.find("elevation")) {
+    push.elevation =
+        core::read_bounded(*elevation, core::kNone, -0.25 * kTurn, 0.25 * kTurn,
+                           context.diagnostics, "an angle from -90 deg (down) to 90 deg (up)")
+            .value_or(0.0);
+  }
+  if (const YamlNode* point = node.find("point")) {
+    push.point = core::read_vector3(*point, core::kLength, context.diagnostics);
+  }
   return push;
 }
 

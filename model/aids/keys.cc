@@ -76,6 +76,9 @@ constexpr KeySpec kConstraintRows[] = {
     key("pitch", map_of(kTurnSpringKeys), "likewise about y"),
     key("yaw", map_of(kTurnSpringKeys), "likewise about z"),
     key("rope", map_of(kRopeKeys), "a rope between a point of the body and a fixed place"),
+    key("known", boolean(),
+        "whether the controller takes its axes, springs both ways, as constraints of its model")
+        .otherwise("false"),
     key("slides", by_axis(quantity(kMass, "a mass")),
         "mass that is moved along x, y, z of the world with the origin of the robot's floating "
         "base and has no weight, as of a slider on a rail; unknown to the controller")

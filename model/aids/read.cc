@@ -209,6 +209,19 @@ std::vector<BodySprings> read_constraints(const YamlNode& node, Diagnostics& dia
     reader.read_axes(entry.value, aid);
     if (const YamlNode* rope = entry.value.find("rope")) reader.read_rope(*rope, aid);
     if (const YamlNode* slides = entry.value.find("slides")) reader.read_slides(*slides, aid);
+    if (const YamlNode* known = entry.value.find("known")) {
+      aid.known = core::read_bool(*known, diagnostics).value_or(false);
+      const auto held = [](const auto& axis) { return axis.has_value(); };
+      const bool both_ways = std::ranges::any_of(aid.axes, held) &&
+                             std::ranges::none_of(aid.axes, [](const auto& axis) {
+                               return axis && axis->travel;
+                             });
+      if (aid.known && !both_ways) {
+        diagnostics.error(known->mark, "misplaced-key",
+                          "the controller can only know springs both ways: expected an axis, "
+                          "without `travel`");
+      }
+    }
     const auto named = [&](std::string_view axis) {
       return core::has_nearly(entry.value, axis) || entry.value.find(axis) != nullptr;
     };

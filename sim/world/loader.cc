@@ -163,6 +163,11 @@ class WorldLoader {
     world_.constraints = model::read_constraints(node, diagnostics_);
     for (const model::BodySprings& aid : world_.constraints) {
       if (!aid.body.name.empty()) world_.links.push_back(aid.body);
+      for (int axis = 0; aid.known && axis < 6; ++axis) {
+        if (aid.axes[static_cast<std::size_t>(axis)]) {
+          world_.control_model.held.push_back({aid.body.name, axis});
+        }
+      }
     }
   }
 

@@ -45,10 +45,9 @@ double timed(const lab::ScenarioDescription& scenario, const std::string& log_pa
   spec.max_time = scenario.duration;
   spec.log = &log;
   lab::ScenarioHooks hooks;
-  const auto push = [&](const std::string& body, double force, double direction, double time) {
-    return backend.push(backend.find_body(body), force, direction, time);
+  hooks.push = [&](const std::string& body, const lab::ScriptedPush& push) {
+    return backend.push(backend.find_body(body), push.force, push.direction, push.duration);
   };
-  hooks.push = push;
   const Clock::time_point start = Clock::now();
   if (watched) {
     lab::run_scenario(scenario, scenario.seeds.front(), loop, hooks, spec);

@@ -77,8 +77,8 @@ class ScenarioRunTest : public testing::Test {
     hal::SensorFaults sensors(stub);
     engine::ControlLoop loop(behavior, sensors, {});
     ScenarioHooks hooks;
-    hooks.push = [&](const std::string& body, double force, double, double) {
-      acts_.push_back({loop.ticks(), body + " " + std::to_string(static_cast<int>(force))});
+    hooks.push = [&](const std::string& body, const lab::ScriptedPush& push) {
+      acts_.push_back({loop.ticks(), body + " " + std::to_string(static_cast<int>(push.force))});
       return true;
     };
     const auto note = [&](const std::string& act) { acts_.push_back({loop.ticks(), act}); };

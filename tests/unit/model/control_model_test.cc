@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/allocation_guard.h"
 #include "tests/support/hume.h"
 #include "tests/support/matrix.h"
@@ -72,6 +74,25 @@ TEST_F(ControlModelOfHume, StandsWithItsFeetOnTheGroundAndItsCentreOfMassOverThe
   const double middle = 0.5 * (model_.point(0).position[0] + model_.point(1).position[0]);
   EXPECT_NEAR(model_.com().position[0], middle, 1e-3);
   EXPECT_GT(model_.point(1).position[1], 0.1);
+}
+
+// Rows of external aids: of the torso's centre of mass along y, whose point the robot file names,
+// and of the base's rotation about z.
+TEST_F(ControlModelOfHume, AxesThatAidsHoldAreThoseOfTheirBody) {
+  model::ModelDeviation known;
+  known.held = {{"torso", 1}, {"torso", 5}};
+  model::ControlModel held(robot_, known);
+  const auto named = std::ranges::find(robot_.points, "torso_com", &model::PointDescription::name);
+  const int point = 2 + static_cast<int>(named - robot_.points.begin());
+  for (int i = 0; i < 10; ++i) {
+    held.update(random_state(robot_, random_));
+    const Matrix y = Matrix::vector(held.held_jacobian(0), 12);
+    const Matrix yaw = Matrix::vector(held.held_jacobian(1), 12);
+    EXPECT_LE((y - Matrix::vector(held.point(point).jacobian.data() + 12, 12)).max_abs(), 1e-12);
+    EXPECT_LE((yaw - Matrix::vector(held.base_rotation().jacobian.data() + 24, 12)).max_abs(), 1e-12);
+    EXPECT_NEAR(held.held_bias(0), held.point(point).bias[1], 1e-9);
+    EXPECT_NEAR(held.held_bias(1), held.base_rotation().bias[2], 1e-9);
+  }
 }
 
 TEST_F(ControlModelOfHume, BiasAccelerationsAreTheDerivativeOfTheJacobians) {

@@ -221,6 +221,31 @@ TEST_F(Mujoco, APushChangesTheMomentumByForceTimesTimeAndFollowsTheHeading) {
   }
 }
 
+// Downwards, 0.2 m in front of the torso's frame: impulse, and its moment about the whole CoM, from
+// the places at the beginning (the robot turns by some mrad meanwhile: 2 %).
+TEST_F(Mujoco, APushCanPointDownwardsAndActOnAnyPointOfTheBody) {
+  auto backend = started();
+  backend.start();
+  lift(backend);
+  const std::array<double, 3> point = {0.2, 0.0, 0.3};
+  const auto turning = [&] {
+    mj_forward(backend.model(), backend.data());
+    mj_subtreeVel(backend.model(), backend.data());
+    const double* h = backend.data()->subtree_angmom + 3;
+    return Vector3{h[0], h[1], h[2]};
+  };
+  const Vector3 before = momentum(backend), turned = turning();
+  const int torso = backend.find_body("torso");
+  const double ahead = backend.data()->xpos[3 * torso] + point[0] - backend.data()->subtree_com[3];
+  ASSERT_TRUE(backend.push(torso, 40.0, 0.0, 0.02, -std::numbers::pi / 2, point));
+  for (int k = 0; k < 30; ++k) backend.write({});
+  const Vector3 now = turning(), after = momentum(backend);
+  const double weight = backend.facts().mass * 9.81;
+  EXPECT_NEAR(after[2] - before[2], -0.8 - weight * 0.02, 2e-3 * weight * 0.02);
+  EXPECT_NEAR(after[0] - before[0], 0.0, 1e-3);
+  EXPECT_NEAR(now[1] - turned[1], ahead * 0.8, 0.02 * ahead * 0.8);
+}
+
 // Less than a physics step of 1/3000 s; one and a half; 30 and a bit.
 TEST_F(Mujoco, APushOfNoWholeNumberOfPhysicsStepsKeepsItsImpulse) {
   for (const double duration : {1e-6, 5e-4, 0.0101}) {

@@ -4,12 +4,15 @@ import io
 import math
 import subprocess
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from rows import FOOTFALL, PROCESSES, ROOT, run, scratch
+from rows import FOOTFALL, PROCESSES, ROOT, WANT, finish, run, scratch  # noqa: F401 (for the rows)
+
+WORLDS = ROOT / "sim" / "worlds"
 
 # Hume's legs (robots/hume/hume.xml), m: from the base to the hips, to the knee, to the ball's centre.
 HIP_Y, HIP_Z = 0.1397, -0.03535
@@ -59,7 +62,8 @@ def world_text(base, shift=0.0, side=0.1397, apart=0.30, slope=45.0, extra=""):
 def rows_of(behavior, world, seed, signals, *options):
     """(summary, rows of the log) of one run, all ticks that are logged."""
     with scratch() as folder:
-        done = run(behavior, "--world", world, "--seed", seed, "--log", folder, *options, log=True)
+        where = ["--world", world] if world else []
+        done = run(behavior, *where, "--seed", seed, "--log", folder, *options, log=True)
         text = subprocess.run([FOOTFALL, "export", folder, "--csv", "--signals", *signals], cwd=ROOT, capture_output=True,
                               text=True, check=True).stdout
     return done, list(csv.DictReader(io.StringIO(text)))
@@ -74,3 +78,37 @@ def each(function, cases):
     """function(*case) for every case, two at a time, in order."""
     with ThreadPoolExecutor(PROCESSES) as pool:
         return list(pool.map(lambda case: function(*case), cases))
+
+
+def largest(values):
+    return max(values, default=math.inf)
+
+
+def relative_error(rows, name="tension"):
+    """rms of measured minus reference over the rms of the reference."""
+    reference = rms(float(r[f"internal.{name}.reference"]) for r in rows)
+    return rms(float(r[f"internal.{name}.measured"]) - float(r[f"internal.{name}.reference"]) for r in rows) / reference
+
+
+def slid(rows):
+    """Largest distance, m, of a foot's contact point from where it was in the first row."""
+    place = lambda row, foot: [float(row[f"point.{foot}.{axis}"]) for axis in "xyz"]
+    return largest(math.dist(place(row, foot), place(rows[0], foot)) for row in rows for foot in ("right_foot", "left_foot"))
+
+
+def held_start(until):
+    """Script entries: people hold the torso from the start, and let go."""
+    return [f"{{at: 0 s, hold: torso, for: {until} s}}"]
+
+
+def scenario_rows(behavior, world, seed, signals, script, duration, *options):
+    """rows_of for a scenario with this script; `world`: a name, or the text of a world file."""
+    with tempfile.TemporaryDirectory(prefix="footfall-wedges-") as folder:
+        if "\n" in world:
+            path = Path(folder) / "world.yaml"
+            path.write_text(world)
+            world = path
+        scenario = Path(folder) / "scenario.yaml"
+        lines = ["scenario: 1", f"behavior: {behavior}", f"world: {world}", f"for: {duration}", f"seeds: [{seed}]", "script:"]
+        scenario.write_text("\n".join(lines + [f"  - {entry}" for entry in script] + ["expect: [{end: time}]"]) + "\n")
+        return rows_of(str(scenario), None, seed, signals, *options)
