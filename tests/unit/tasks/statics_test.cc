@@ -7,6 +7,7 @@
 
 #include "tasks/statics.h"
 #include "tests/support/hume.h"
+#include "tests/support/hume_control.h"
 #include "tests/support/matrix.h"
 
 namespace footfall::tests {
