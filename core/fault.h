@@ -45,7 +45,7 @@ constexpr std::string_view fault_name(Fault fault) {
       "fall",      "non_finite",     "torque.limit", "torque.step", "joint.limit",  "swing.long",
       "simulator", "sensor.stale",   "imu.stale",    "mocap.stale", "tick.overrun", "planner.late",
       "execution", "event.overflow", "rank.loss",    "no_estimate", "script.stuck", "swing.contact",
-      "condition", "load.air",       "sensor.clock", "sensor.nan", "slip"};
+      "condition", "load.air",       "sensor.clock", "sensor.nan",  "slip"};
   return names[static_cast<std::size_t>(fault)];
 }
 

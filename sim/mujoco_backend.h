@@ -28,7 +28,7 @@ struct ActivePush {
   std::array<double, 3> force{};  // N, world
   // Of the body's frame, m, where it acts; nullopt: its centre of mass.
   std::optional<std::array<double, 3>> point;
-  double steps_left = 0.0;        // physics steps; the last one may be a part
+  double steps_left = 0.0;  // physics steps; the last one may be a part
 };
 inline constexpr std::size_t kMaxPushes = 32;  // maximum number of simultaneous pushes
 

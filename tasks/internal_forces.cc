@@ -101,8 +101,7 @@ const InternalForces::Memory* InternalForces::find(std::uint32_t key,
 // The low-pass of a force that was not in force in the last tick begins at its reference: feedback
 // comes in with the low-pass's own time, whatever the torques before were.
 void InternalForces::name_row(WboscProblem& problem, int row, const InternalCommand& c,
-                              double reference, std::int64_t tick,
-                              bool alone) const noexcept {
+                              double reference, std::int64_t tick, bool alone) const noexcept {
   const std::size_t r = at(row);
   const Memory* last = find(key_of(c.contacts, c.contact_count), tick - 1);
   double share = 1.0;

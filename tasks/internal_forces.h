@@ -24,8 +24,8 @@ class InternalForces {
       : model_(model), period_(period), rows_(rows) {}
 
   // The law's rows into the problem: those that it names and whose contacts hold, in order, then
-  // the rest of the basis at 0 N. `alone`: no other law acts, so that what is measured is this one's
-  // and is fed back. Allocates nothing.
+  // the rest of the basis at 0 N. `alone`: no other law acts, so that what is measured is this
+  // one's and is fed back. Allocates nothing.
   void assemble(WboscProblem& problem, const ControlSet& set, std::int64_t tick,
                 bool alone) const noexcept;
   // After solve(): remembers what the rows' feedback has come to.

@@ -82,7 +82,8 @@ FaultFindings SafetyFilter::filter(hal::Commands& commands, const hal::Sensors& 
     double& tau = commands.tau[j];
     if (!finite) tau = 0.0;
     double limit = robot_.joints[j].torque_limit;
-    const double measured = std::copysign(sensors.tau[j], sensors.tau[j] * tau);  // along the command
+    const double measured =
+        std::copysign(sensors.tau[j], sensors.tau[j] * tau);  // along the command
     if (robot_.command_limit > 1.0 && measured < limit) limit *= robot_.command_limit;
     if (limit > 0.0 && std::abs(tau) >= limit) {
       findings.add(Fault::torque_limit, {static_cast<int>(j), tau, std::abs(tau) - limit});

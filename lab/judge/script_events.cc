@@ -151,10 +151,9 @@ void ScenarioCues::act(const ScriptEntry& entry, RunLog& log) {
     const ScriptedPush& push = *entry.push;
     const std::string& body = push.body.empty() ? loop_.behavior().robot.floating_base : push.body;
     log.event("push", body,
-              fmt::format("{:g} N, {:g} s, {:g} rad{}", push.force, push.duration, push.direction,
-                          push.elevation == 0.0
-                              ? ""
-                              : fmt::format(", {:g} rad upwards", push.elevation)));
+              fmt::format(
+                  "{:g} N, {:g} s, {:g} rad{}", push.force, push.duration, push.direction,
+                  push.elevation == 0.0 ? "" : fmt::format(", {:g} rad upwards", push.elevation)));
     if (!hooks_.push(body, push)) {
       add_problem(entry, "too many pushes at once");
     }

@@ -45,9 +45,8 @@ const std::string& place_name(const ControlLoop& loop, Fault fault,
   const model::RobotDescription& robot = loop.behavior().robot;
   const auto index = static_cast<std::size_t>(place.joint);
   if (fault == Fault::condition) return loop.behavior().task_instances[index].name;
-  const bool of_contact =
-      fault == Fault::swing_too_long || fault == Fault::swing_contact || fault == Fault::load_air ||
-      fault == Fault::slip;
+  const bool of_contact = fault == Fault::swing_too_long || fault == Fault::swing_contact ||
+                          fault == Fault::load_air || fault == Fault::slip;
   return of_contact ? robot.contacts[index].name : robot.joints[index].name;
 }
 

@@ -87,8 +87,7 @@ constexpr KeySpec kMomentRows[] = {
 };
 
 constexpr KeySpec kPushRows[] = {
-    key("body", name_of("a body"), "body that it acts on")
-        .otherwise("the floating base"),
+    key("body", name_of("a body"), "body that it acts on").otherwise("the floating base"),
     key("force", quantity(kForce), "magnitude").required(),
     key("for", quantity(kTime), "duration").required(),
     key("direction", quantity(kNone, "an angle"), "in the heading frame: 0 forward, 90 deg left")

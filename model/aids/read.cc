@@ -212,10 +212,9 @@ std::vector<BodySprings> read_constraints(const YamlNode& node, Diagnostics& dia
     if (const YamlNode* known = entry.value.find("known")) {
       aid.known = core::read_bool(*known, diagnostics).value_or(false);
       const auto held = [](const auto& axis) { return axis.has_value(); };
-      const bool both_ways = std::ranges::any_of(aid.axes, held) &&
-                             std::ranges::none_of(aid.axes, [](const auto& axis) {
-                               return axis && axis->travel;
-                             });
+      const bool both_ways =
+          std::ranges::any_of(aid.axes, held) &&
+          std::ranges::none_of(aid.axes, [](const auto& axis) { return axis && axis->travel; });
       if (aid.known && !both_ways) {
         diagnostics.error(known->mark, "misplaced-key",
                           "the controller can only know springs both ways: expected an axis, "

@@ -53,7 +53,7 @@ struct BodySprings {
   std::array<double, 3> slides{};
   core::Mark slides_mark;
   bool known = false;  // a constraint: the controller counts on its axes
-  bool all = false;  // a hold that names no axes: every axis, of a body that is no root x y z
+  bool all = false;    // a hold that names no axes: every axis, of a body that is no root x y z
 
   // Whether an axis has a stiffness or a damping of its own, which may be unstable.
   bool has_own_values() const;

@@ -96,7 +96,7 @@ struct RobotDescription {
   double condition_limit = 100.0;
   // Of commanded torques, over the joints' limits; above 1 those hold for the measured torques.
   double command_limit = 1.0;
-  double slip_limit = 0.01;  // m, along the ground, in about 0.2 s
+  double slip_limit = 0.01;   // m, along the ground, in about 0.2 s
   double imu_age = 0.02;      // s, without new IMU data
   double mocap_age = 0.2;     // s, without a new frame of motion capture
   double edit_ramp = 0.1;     // s, shortest of a person's edits
@@ -108,7 +108,8 @@ struct RobotDescription {
   double rate_hz() const { return static_cast<double>(rate_mhz) * 1e-3; }
   double period_s() const { return 1e3 / static_cast<double>(rate_mhz); }
   int joint_count() const { return static_cast<int>(joints.size()); }
-  std::vector<double> torque_limits() const;  // N m, of commands by joint; infinite where none is given
+  std::vector<double> torque_limits()
+      const;  // N m, of commands by joint; infinite where none is given
   int find_joint(std::string_view name) const;
   int find_contact(std::string_view name) const;
   int find_group(std::string_view name) const;

@@ -85,7 +85,9 @@ constexpr auto kRules = std::to_array<FaultRule>({
      "a measured value that the estimator uses is not a number",
      Reaction::safe_state,
      {}},
-    {Fault::slip, "a foot slides along the ground by more than `limits.slip`", Reaction::keep_going,
+    {Fault::slip,
+     "a foot slides along the ground by more than `limits.slip`",
+     Reaction::keep_going,
      {}},
 });
 

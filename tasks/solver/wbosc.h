@@ -66,8 +66,8 @@ struct WboscProblem {
   std::vector<double> W_int;     // internal_rows x contact_rows, acts on f (ground on robot)
   std::vector<double> F_int;     // wanted W_int f
   std::vector<double> K_F;       // feedback on W_int f(tau_measured), 0: none
-  // What is fed back is this part of the error, F_int + part (W_int f(tau_measured) - F_int), after a
-  // low-pass: before + share (... - before); share 1: none.
+  // What is fed back is this part of the error, F_int + part (W_int f(tau_measured) - F_int), after
+  // a low-pass: before + share (... - before); share 1: none.
   std::vector<double> measured_part, measured_share, measured_before;
   // Integral of that error: before + gain (F_int - filtered), within limit (0: none). It does not
   // grow while a torque limit acts (hold_integral).

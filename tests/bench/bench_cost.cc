@@ -189,7 +189,19 @@ int profile(const std::string& name) {
   return 0;
 }
 
-enum { kDual, kTension, kSingle, kStep, kFactor, kUpdate, kWbosc2, kWbosc1, kNaive2, kNaive1, kPartCount };
+enum {
+  kDual,
+  kTension,
+  kSingle,
+  kStep,
+  kFactor,
+  kUpdate,
+  kWbosc2,
+  kWbosc1,
+  kNaive2,
+  kNaive1,
+  kPartCount
+};
 using Parts = std::array<Part, kPartCount>;
 
 // Figures of one stance: `tick`, `wbosc` and `naive` are its places in `parts`.

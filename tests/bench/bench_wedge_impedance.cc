@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kForce = 10.0;   // N
+constexpr double kPush = 10.0;    // N
 constexpr double kSettled = 5.0;  // s
 constexpr double kHeld = 2.0;     // s, of the force
 
@@ -78,7 +78,7 @@ void push_all(sim::MujocoBackend& backend, double elevation) {
   for (int b = 1; b < m->nbody; ++b) mass += m->body_mass[b];
   for (int b = 1; b < m->nbody; ++b) {
     if (m->body_mass[b] <= 0.0) continue;
-    const double part = kForce * m->body_mass[b] / mass;
+    const double part = kPush * m->body_mass[b] / mass;
     if (!backend.push(b, part, 0.0, kHeld + 1.0, elevation)) throw std::runtime_error("no push");
   }
 }
@@ -98,7 +98,7 @@ nlohmann::ordered_json measure(int axis, bool known) {
   return {{"axis", axis == 0 ? "x" : "z"},
           {"known", known},
           {"expected", expected},
-          {"measured", kForce / moved},
+          {"measured", kPush / moved},
           {"moved_mm", 1e3 * moved}};
 }
 

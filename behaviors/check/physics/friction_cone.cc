@@ -99,8 +99,8 @@ class ForceCheck {
     return worst;
   }
 
-  // In the posture of the start: forces that cannot be commanded one by one, such as all six tensions
-  // of four feet on a plane. `between: all` asks for no more than there is.
+  // In the posture of the start: forces that cannot be commanded one by one, such as all six
+  // tensions of four feet on a plane. `between: all` asks for no more than there is.
   void judge_rank(const std::vector<double>& all) {
     std::set<int> names;
     for (int k = 0; k < control_.internals.count; ++k) names.insert(spec(k).instance);
@@ -111,11 +111,11 @@ class ForceCheck {
     if (rank >= count) return;
     context_.findings.add(
         Severity::error, spec(count - 1).mark, "dependent-forces", {},
-        fmt::format("{} internal forces, but the feet in contact bear only {} that are independent "
-                    "of each other{}",
-                    count, rank,
-                    control_.contacts.size() == 4 ? ": on level ground five tensions and the warp"
-                                                  : ""));
+        fmt::format(
+            "{} internal forces, but the feet in contact bear only {} that are independent "
+            "of each other{}",
+            count, rank,
+            control_.contacts.size() == 4 ? ": on level ground five tensions and the warp" : ""));
   }
 
   // Where feet stand on slopes too steep for them, internal forces have to hold them: those of the
@@ -160,8 +160,7 @@ class ForceCheck {
       internal[static_cast<std::size_t>(k)] = spec(k).scale * *value;
       if (const auto found = overload(internal)) {
         const std::string where = fmt::format(" at the end of the range of '{}'", info.name);
-        report(k, *found, Severity::warning,
-               leaves_cone(k, where), where);
+        report(k, *found, Severity::warning, leaves_cone(k, where), where);
         return;
       }
     }

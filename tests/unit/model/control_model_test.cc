@@ -89,7 +89,8 @@ TEST_F(ControlModelOfHume, AxesThatAidsHoldAreThoseOfTheirBody) {
     const Matrix y = Matrix::vector(held.held_jacobian(0), 12);
     const Matrix yaw = Matrix::vector(held.held_jacobian(1), 12);
     EXPECT_LE((y - Matrix::vector(held.point(point).jacobian.data() + 12, 12)).max_abs(), 1e-12);
-    EXPECT_LE((yaw - Matrix::vector(held.base_rotation().jacobian.data() + 24, 12)).max_abs(), 1e-12);
+    EXPECT_LE((yaw - Matrix::vector(held.base_rotation().jacobian.data() + 24, 12)).max_abs(),
+              1e-12);
     EXPECT_NEAR(held.held_bias(0), held.point(point).bias[1], 1e-9);
     EXPECT_NEAR(held.held_bias(1), held.base_rotation().bias[2], 1e-9);
   }

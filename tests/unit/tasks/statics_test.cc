@@ -1,11 +1,12 @@
 // Forces by statics: what they balance, and that they lean least. Hume on ground of several slopes.
+#include "tasks/statics.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "tasks/statics.h"
 #include "tests/support/hume.h"
 #include "tests/support/hume_control.h"
 #include "tests/support/matrix.h"

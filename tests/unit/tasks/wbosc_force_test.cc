@@ -62,8 +62,8 @@ TEST_F(WboscTension, TheMeanOfBothFeetIsWhatWasAskedForInAnyState) {
   }
 }
 
-// Any state, moving, its feet anywhere: the accelerations of all coordinates are the same to 1e-9 of
-// their size with 100 N and without.
+// Any state, moving, its feet anywhere: the accelerations of all coordinates are the same to 1e-9
+// of their size with 100 N and without.
 TEST_F(WboscTension, ATensionMovesNothingInAnyState) {
   for (int i = 0; i < 50; ++i) {
     fill(random_state(robot_, random_), 0.0);

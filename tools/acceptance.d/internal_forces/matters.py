@@ -7,7 +7,7 @@ import random
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from wedge_runs import WORLDS, each, finish, held_start, scenario_rows, slid, world_text
 

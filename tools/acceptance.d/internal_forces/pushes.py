@@ -6,7 +6,7 @@ import statistics
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from wedge_runs import WANT, WORLDS, each, finish, held_start, scenario_rows, world_text
 

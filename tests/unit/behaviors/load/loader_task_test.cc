@@ -177,9 +177,10 @@ TEST(LoaderTask, AForceThatActsInOneOfItsStatesIsGoodAndOneThatNeverDoesIsAnErro
            contacts_of_b + "], after: 1 s, to: a}\n";
   };
   EXPECT_EQ(problems(text("right_foot, left_foot")), "");
-  EXPECT_EQ(problems(text("left_foot")),
-            "b.yaml:4:27: error: internal force 't' never acts: no state with it has all of its feet in "
-            "contact\n");
+  EXPECT_EQ(
+      problems(text("left_foot")),
+      "b.yaml:4:27: error: internal force 't' never acts: no state with it has all of its feet in "
+      "contact\n");
 }
 TEST(LoaderTask, AGainThatEveryTaskReplacesIsUnusedAndOneThatSomeTaskTakesIsNot) {
   const auto text = [](const std::string& of_b) {

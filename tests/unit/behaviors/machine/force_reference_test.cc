@@ -34,7 +34,8 @@ class ForceReference : public testing::Test {
 };
 
 TEST_F(ForceReference, ATrajectoryBeginsAtZeroAndTheNextOneWhereItEnds) {
-  begin("{trajectory: cosine, to: $f, over: 100 ms}", "{trajectory: cosine, to: \"= entry + 10 N\", over: 100 ms}");
+  begin("{trajectory: cosine, to: $f, over: 100 ms}",
+        "{trajectory: cosine, to: \"= entry + 10 N\", over: 100 ms}");
   EXPECT_NEAR(force().reference, 0.0, 1e-12);
   const AllocationGuard guard;
   run_->run_to(75);  // half of the way
@@ -52,12 +53,13 @@ TEST_F(ForceReference, ATrajectoryBeginsAtZeroAndTheNextOneWhereItEnds) {
 }
 
 TEST_F(ForceReference, TheSameTrajectoryGoesOnWhereOnlyOtherKeysChange) {
-  const std::string head = "behavior: 1\nrobot: hume\nmachine:\n  contacts: [right_foot, left_foot]\n";
+  const std::string head =
+      "behavior: 1\nrobot: hume\nmachine:\n  contacts: [right_foot, left_foot]\n";
   run_ = std::make_unique<Runner>(
-      load(head +
-           "  internal: {t: {between: [right_foot, left_foot], reference: {trajectory: cosine, to: 30 N, "
-           "over: 400 ms}}}\n  states:\n    a: {after: 200 ms, to: b}\n"
-           "    b: {internal: {t: {feedback: 2}}}\n"),
+      load(head + "  internal: {t: {between: [right_foot, left_foot], reference: {trajectory: "
+                  "cosine, to: 30 N, "
+                  "over: 400 ms}}}\n  states:\n    a: {after: 200 ms, to: b}\n"
+                  "    b: {internal: {t: {feedback: 2}}}\n"),
       Body::standing);
   run_->start();
   run_->tick();
@@ -74,9 +76,11 @@ TEST_F(ForceReference, StaticsIsAPartOfWhatTheControllerFinds) {
 }
 
 TEST_F(ForceReference, KeysOfAForceAreExpressions) {
-  begin("\"= $f / 2\", feedback: \"= 1 + t / 1 s\", integral: 3 1/s, integral_limit: 10 N, ramp: 4 ms, "
-        "bandwidth: 30 Hz, convention: sum",
-        "$f");
+  begin(
+      "\"= $f / 2\", feedback: \"= 1 + t / 1 s\", integral: 3 1/s, integral_limit: 10 N, ramp: 4 "
+      "ms, "
+      "bandwidth: 30 Hz, convention: sum",
+      "$f");
   EXPECT_DOUBLE_EQ(force().reference, 10.0);
   EXPECT_DOUBLE_EQ(force().integral, 3.0);
   EXPECT_DOUBLE_EQ(force().integral_limit, 5.0);  // N at each contact

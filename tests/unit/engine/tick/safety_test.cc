@@ -82,7 +82,8 @@ TEST_F(Safety, TheFirstTickHasNoStepAndLaterOnesAreOfWhatIsSent) {
   EXPECT_TRUE(filter.filter(commands, hal::Sensors{}).has(Fault::torque_step));
   EXPECT_NEAR(filter.torque_step(), 5.1, 1e-12);
   commands.tau = {50.0, 6.0, -8.0};  // the largest of two steps, with its sign
-  const engine::FaultPlace place = filter.filter(commands, hal::Sensors{}).place(Fault::torque_step);
+  const engine::FaultPlace place =
+      filter.filter(commands, hal::Sensors{}).place(Fault::torque_step);
   EXPECT_EQ(place.joint, 2);
   EXPECT_EQ(place.value, -8.0);
   filter.filter(commands, hal::Sensors{});

@@ -1,11 +1,11 @@
-// A foot that slides: what counts as a slide, and what does not. Hume on both feet; states and measured
-// torques are made by hand.
+// A foot that slides: what counts as a slide, and what does not. Hume on both feet; states and
+// measured torques are made by hand.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "engine/tick/slip_watch.h"
+#include "engine/tick/feet_watch.h"
 #include "tests/support/hume.h"
 #include "tests/support/hume_control.h"
 

@@ -1,9 +1,10 @@
-// Sliding feet; see slip_watch.h.
-#include "engine/tick/slip_watch.h"
+// Phases and slides of the feet; see feet_watch.h.
+#include "engine/tick/feet_watch.h"
 
 #include <cmath>
 #include <limits>
 
+#include "behaviors/compiled/control_set.h"
 #include "core/index.h"
 
 namespace footfall::engine {
@@ -17,6 +18,35 @@ double along(const std::array<double, 3>& v, const std::array<double, 3>& normal
 }
 
 }  // namespace
+
+FaultFindings SwingWatch::check(int control, const Contacts& contacts, bool stepping) noexcept {
+  FaultFindings findings;
+  const behaviors::ControlSpec& spec = behavior_.controls[at(control)];
+  const model::RobotDescription& robot = behavior_.robot;
+  const double period = robot.period_s();
+  for (int c = 0; c < static_cast<int>(robot.contacts.size()); ++c) {
+    Phase& phase = phases_[at(c)];
+    const bool held = behaviors::law_holds(behavior_, control, c);
+    if (!stepping || held || spec.contacts.empty()) {
+      if (held && phase.ticks > 0 && !contacts[at(c)]) {
+        findings.add(core::Fault::load_air, {c, static_cast<double>(phase.ticks) * period, 0.0});
+      }
+      const std::int64_t excess = 2 * phase.loaded - phase.ticks;
+      if (held && excess > 0) {
+        findings.add(core::Fault::swing_contact, {c, static_cast<double>(phase.loaded) * period,
+                                                  0.5 * static_cast<double>(excess) * period});
+      }
+      phase = {};
+      continue;
+    }
+    ++phase.ticks;
+    if (contacts[at(c)]) ++phase.loaded;
+    const double loaded = static_cast<double>(phase.loaded) * period;
+    if (loaded <= 0.5 * robot.swing_limit) continue;
+    findings.add(core::Fault::swing_contact, {c, loaded, loaded - 0.5 * robot.swing_limit});
+  }
+  return findings;
+}
 
 double cone_use(const std::array<double, 3>& force, const std::array<double, 3>& normal,
                 double friction) noexcept {
@@ -44,8 +74,8 @@ FaultFindings SlipWatch::check(const tasks::ControlSet& set, const model::Contro
     const std::array<double, 3>& normal = model.contact_normal(c);
     const std::array<double, 3>& velocity = model.point(c).velocity;
     const double away = along(velocity, normal);
-    const bool counts = cone_use(result.force_measured[at(c)], normal,
-                                 robot.contacts[at(c)].friction) >= kLeastUse;
+    const bool counts =
+        cone_use(result.force_measured[at(c)], normal, robot.contacts[at(c)].friction) >= kLeastUse;
     double squared = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       slide.way[k] *= 1.0 - period / kForgotten;

@@ -8,7 +8,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from rows import FOOTFALL, PROCESSES, ROOT, WANT, finish, run, scratch  # noqa: F401 (for the rows)
 
