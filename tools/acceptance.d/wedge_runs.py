@@ -60,12 +60,14 @@ def world_text(base, shift=0.0, side=0.1397, apart=0.30, slope=45.0, extra=""):
 
 
 def rows_of(behavior, world, seed, signals, *options):
-    """(summary, rows of the log) of one run, all ticks that are logged."""
+    """(summary with the times of the fault `slip`, rows of the log) of one run, all ticks that are logged."""
     with scratch() as folder:
         where = ["--world", world] if world else []
         done = run(behavior, *where, "--seed", seed, "--log", folder, *options, log=True)
         text = subprocess.run([FOOTFALL, "export", folder, "--csv", "--signals", *signals], cwd=ROOT, capture_output=True,
                               text=True, check=True).stdout
+        events = subprocess.run([FOOTFALL, "events", folder], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    done["slips"] = [float(line.split()[0]) for line in events.splitlines() if line.split()[2:4] == ["fault", "slip"]]
     return done, list(csv.DictReader(io.StringIO(text)))
 
 

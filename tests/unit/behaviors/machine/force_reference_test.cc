@@ -28,7 +28,7 @@ class ForceReference : public testing::Test {
     run_->tick();
   }
   const tasks::InternalCommand& force() const {
-    return run_->machine().control().primary.internals[0];
+    return run_->machine.control().primary.internals[0];
   }
   std::unique_ptr<Runner> run_;
 };

@@ -98,14 +98,14 @@ TEST_F(Safety, LimitedStepsNeverExceedTheBoundByABitAndReachWhatIsAskedFor) {
     robot.torque_step_limit = bound;
     engine::SafetyFilter limited{robot};
     hal::Commands sent;
-    limited.filter(sent, true);
+    limited.filter(sent, hal::Sensors{}, true);
     std::array<double, 6> before{};
     for (const double wanted : {-33.3, 48.7, 0.0, 1e-9, 49.99}) {
       const double away = std::abs(wanted - before[0]);
       const auto ticks = static_cast<int>(std::ceil(away / bound * (1.0 + 1e-12)));
       for (int k = 1; k <= ticks; ++k) {
         for (std::size_t j = 0; j < 6; ++j) sent.tau[j] = wanted;
-        const engine::FaultFindings findings = limited.filter(sent, true);
+        const engine::FaultFindings findings = limited.filter(sent, hal::Sensors{}, true);
         EXPECT_FALSE(findings.has(Fault::torque_step));
         EXPECT_EQ(limited.held_back(), sent.tau[0] != wanted);
         for (std::size_t j = 0; j < 6; ++j) {
@@ -121,14 +121,14 @@ TEST_F(Safety, LimitedStepsNeverExceedTheBoundByABitAndReachWhatIsAskedFor) {
 TEST_F(Safety, WithoutABoundNothingIsHeldBackAndWhatIsNotFiniteIsLetGoAtOnce) {
   hal::Commands commands;
   commands.tau[0] = 40.0;
-  filter.filter(commands, true);  // the first command has none before it
+  filter.filter(commands, hal::Sensors{}, true);  // the first command has none before it
   EXPECT_EQ(commands.tau[0], 40.0);
   commands.tau[0] = std::nan("");
-  filter.filter(commands, true);
+  filter.filter(commands, hal::Sensors{}, true);
   EXPECT_EQ(commands.tau[0], 0.0);
   robot.torque_step_limit = 0.0;
   commands.tau[0] = 45.0;
-  filter.filter(commands, true);
+  filter.filter(commands, hal::Sensors{}, true);
   EXPECT_EQ(commands.tau[0], 45.0);
   EXPECT_FALSE(filter.held_back());
 }
