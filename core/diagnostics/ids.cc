@@ -38,8 +38,6 @@ constexpr auto kIds = std::to_array<DiagnosticInfo>({
     {"cut-text", kWarning, "a text that ends at a '#', which begins a comment"},
     {"dead-end", kWarning, "a state that can never be exited and is not final"},
     {"decimal-comma", kError, "a decimal comma in braces, where it separates keys"},
-    {"dependent-forces", kError,
-     "more internal forces than the feet in contact bear independently of each other"},
     {"dimension", kError, "a value of the wrong dimension"},
     {"done-of-parallel", kWarning, "`done:` names a region that is parallel itself"},
     {"duplicate", kError, "a duplicate entry"},

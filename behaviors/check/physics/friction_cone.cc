@@ -109,8 +109,9 @@ class ForceCheck {
     context_.model.update(context_.postures.front());
     const int rank = context_.law.rest(control_, all).internal_rank;
     if (rank >= count) return;
+    const core::Mark mark = spec(count - 1).mark;
     context_.findings.add(
-        Severity::error, spec(count - 1).mark, "dependent-forces", {},
+        Severity::error, mark, "dependent-forces", {},
         fmt::format(
             "{} internal forces, but the feet in contact bear only {} that are independent "
             "of each other{}",

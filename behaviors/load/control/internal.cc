@@ -115,8 +115,14 @@ void warn_idle_integral_limit(LoadContext& context, const DraftItem& item,
                   "`integral_limit` without `integral` has no effect");
 }
 
-// Compiles an internal force except for its contacts; nullopt after an error.
-std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem& item) {
+// An internal force except for its contacts.
+struct Force {
+  InternalSpec spec;
+  bool sum = false;  // its convention
+};
+
+// nullopt after an error.
+std::optional<Force> compile_force(LoadContext& context, const DraftItem& item) {
   core::YamlNode map;
   map.kind = core::YamlNode::Kind::map;
   for (const DraftKey& key : item.keys)
@@ -128,7 +134,8 @@ std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem&
                   fmt::format("internal force '{}' needs `between` and `reference`", item.name));
     return std::nullopt;
   }
-  InternalSpec spec;
+  Force force;
+  InternalSpec& spec = force.spec;
   compile_force_reference(context, *reference, spec);
   spec.feedback = compile_limit(context, item, "feedback", core::kNone);
   spec.integral = compile_limit(context, item, "integral", core::kRate);
@@ -138,15 +145,11 @@ std::optional<InternalSpec> compile_force(LoadContext& context, const DraftItem&
   warn_idle_integral_limit(context, item, spec);
   const auto& names = context.behavior.internal_instances;
   while (names[static_cast<std::size_t>(spec.instance)] != item.name) ++spec.instance;
-  return spec;
-}
-
-// Mean force over what is written: of a pair ½ for `sum`, of a warp ¼.
-double scale_of(LoadContext& context, const DraftItem& item, int contacts) {
-  const DraftKey* convention = item.find("convention");
-  if (convention == nullptr) return 1.0;
-  const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
-  return choice && *choice == 1 ? 1.0 / contacts : 1.0;
+  if (const DraftKey* convention = item.find("convention")) {
+    const auto choice = core::read_choice(*convention->node, kConventions, context.diagnostics);
+    force.sum = choice && *choice == 1;
+  }
+  return force;
 }
 
 // Notes whether a force takes effect here: it needs all of its feet in contact.
@@ -194,17 +197,17 @@ std::vector<InternalSpec> compile_internals(LoadContext& context, const Draft& d
   for (const bool all : {false, true}) {  // an entry for one pair overrides the entry for all pairs
     for (const DraftItem& item : draft.internals) {
       if (is_all(item) != all) continue;
-      const std::optional<InternalSpec> compiled = compile_force(context, item);
+      const std::optional<Force> compiled = compile_force(context, item);
       if (!compiled) continue;
       const core::YamlNode& between = *item.find("between")->node;
       const std::vector<Contacts> forces = read_between(context, between, contacts);
       note_use(context, item, between, forces, contacts);
       for (const Contacts& force : forces) {
         if (!named(force)) {
-          InternalSpec& spec = out.emplace_back(*compiled);
+          InternalSpec& spec = out.emplace_back(compiled->spec);
           spec.contact_count = static_cast<int>(force.size());
           std::ranges::copy(force, spec.contacts.begin());
-          spec.scale = scale_of(context, item, spec.contact_count);
+          spec.scale = compiled->sum ? 1.0 / spec.contact_count : 1.0;  // of a mean force
         } else if (!all) {
           context.error(between.mark, "duplicate",
                         "another internal force acts between these contacts already");

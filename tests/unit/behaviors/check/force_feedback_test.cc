@@ -111,5 +111,36 @@ TEST(PhysicsFeedback, TheAgeOfTheMeasuredTorqueIsThatOfItsCommand) {
   }
 }
 
+// Four feet on level ground bear five tensions and their warp; `all` asks for no more than there
+// is.
+TEST(PhysicsInternal, SixTensionsByNameAreOneTooMany) {
+  const std::string feet[] = {"front_right_foot", "front_left_foot", "rear_left_foot",
+                              "rear_right_foot"};
+  const auto text = [&](const std::string& forces) {
+    return "behavior: 1\nrobot: quadruped\nmachine:\n  contacts: [front_right_foot, "
+           "front_left_foot, "
+           "rear_right_foot, rear_left_foot]\n  tasks:\n    com: {type: com_position, reference: "
+           "entry, gains: {kp: 100, kd: 20}}\n    turn: {type: body_orientation, reference: 0, "
+           "gains: "
+           "{kp: 100, kd: 20}}\n  internal:\n" +
+           forces;
+  };
+  std::string six;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i + 1; j < 4; ++j) {
+      six += "    t" + std::to_string(i) + std::to_string(j) + ": {between: [" + feet[i] + ", " +
+             feet[j] + "], reference: 1 N}\n";
+    }
+  }
+  EXPECT_THAT(physics(text(six)),
+              HasSubstr("error: 6 internal forces, but the feet in contact bear only 5"));
+  EXPECT_EQ(physics(text("    t: {between: all, reference: 1 N}\n")), "");
+  std::string warp = six.substr(six.find("    t01"), six.rfind("    t23"));
+  warp +=
+      "    w: {between: [front_right_foot, front_left_foot, rear_left_foot, rear_right_foot], "
+      "reference: 1 N}\n";
+  EXPECT_EQ(physics(text(warp)), "");
+}
+
 }  // namespace
 }  // namespace footfall::tests
