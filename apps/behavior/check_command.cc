@@ -31,6 +31,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   std::string stdin_name = "stdin";
   std::string robot;  // file or name
+  std::string world;  // file or name, in which behaviors are judged
   bool strict = false, json = false;
 };
 
@@ -46,6 +47,7 @@ void check_fit(const model::RobotDescription& robot, core::Diagnostics& diagnost
 // What the checks of one file give and take.
 struct Checked {
   const std::string& robot;  // file or name; empty: a behavior's own
+  const std::string& world;  // file or name; empty: the default one
   core::Diagnostics& diagnostics;
   std::string not_judged;  // for want of a robot; empty: all was judged
 };
@@ -104,16 +106,46 @@ void check_world(const std::string& path, Checked& checked) {
   }
 }
 
-behaviors::LoadOptions load_options(const std::string& robot) {
+// The world of --world, an error if there is none.
+std::optional<sim::WorldDescription> named_world(const std::string& name,
+                                                 core::Diagnostics& diagnostics) {
+  const std::string path = sim::find_world_file(name, search_path());
+  if (path.empty()) {
+    diagnostics.error(
+        {diagnostics.add_file("--world"), 0, 0}, "cannot-read",
+        fmt::format("no such file, and no world '{}'{}", name,
+                    core::did_you_mean_or_list(name, core::names_in(search_path(), "sim/worlds"))));
+    return std::nullopt;
+  }
+  sim::WorldDescription world = sim::load_world(path, diagnostics, search_path());
+  if (diagnostics.has_errors()) return std::nullopt;
+  return world;
+}
+
+// Loads a behavior with `load`, in the world of --world.
+void check_behavior_with(Checked& checked, const std::function<std::unique_ptr<behaviors::Behavior>(
+                                               const behaviors::LoadOptions&)>& load) {
   behaviors::LoadOptions options;
   options.search = search_path();
-  options.robot = robot;
-  options.check = behaviors::physics_check();
-  return options;
+  options.robot = checked.robot;
+  std::optional<sim::WorldDescription> world;
+  if (!checked.world.empty()) {
+    world = named_world(checked.world, checked.diagnostics);
+    if (!world) return;
+  }
+  const auto judged_in = world ? physics_world(*world, false) : behaviors::PhysicsWorld{};
+  options.check = behaviors::physics_check(judged_in);
+  options.world = judged_in.actuators;
+  const auto behavior = load(options);
+  if (world && behavior && behavior->has_robot) {
+    check_world_fits(*world, behavior->robot, checked.diagnostics);
+  }
 }
 
 void check_behavior(const std::string& path, Checked& checked) {
-  behaviors::load_behavior(path, load_options(checked.robot), checked.diagnostics);
+  check_behavior_with(checked, [&](const behaviors::LoadOptions& options) {
+    return behaviors::load_behavior(path, options, checked.diagnostics);
+  });
 }
 
 // Checks the world that a scenario names: a file beside it, or one found by name; as the scenario's
@@ -184,8 +216,9 @@ void check_file(const std::string& file, const CheckOptions& options, Checked& c
   core::Diagnostics& diagnostics = checked.diagnostics;
   if (file == "-") {
     const std::string text = core::read_whole_file(file);
-    behaviors::load_behavior_text(text, options.stdin_name, load_options(options.robot),
-                                  diagnostics);
+    check_behavior_with(checked, [&](const behaviors::LoadOptions& load) {
+      return behaviors::load_behavior_text(text, options.stdin_name, load, diagnostics);
+    });
     return;
   }
   const std::string path = require_named_file(file, diagnostics);
@@ -197,6 +230,12 @@ void check_file(const std::string& file, const CheckOptions& options, Checked& c
   if (!options.robot.empty() && !takes_robot) {
     diagnostics.error({diagnostics.add_file("--robot"), 0, 0}, "set",
                       fmt::format("is of behaviors and worlds; '{}' is a {}", file, key));
+    return;
+  }
+  const bool takes_world = kind == std::end(kKinds) || kind->check == check_behavior;
+  if (!options.world.empty() && !takes_world) {
+    diagnostics.error({diagnostics.add_file("--world"), 0, 0}, "set",
+                      fmt::format("is of behaviors; '{}' is a {}", file, key));
     return;
   }
   (kind == std::end(kKinds) ? check_behavior : kind->check)(path, checked);
@@ -228,7 +267,7 @@ int check(const CheckOptions& options) {
   auto results = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     core::Diagnostics diagnostics;
-    Checked checked{options.robot, diagnostics, {}};
+    Checked checked{options.robot, options.world, diagnostics, {}};
     check_file(file, options, checked);
     const auto items = diagnostics.sorted();
     const auto wrong = static_cast<int>(
@@ -277,6 +316,9 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "One JSON object with every problem");
   command->add_option("--robot", options->robot,
                       "Robot file or name: of behaviors instead of their own, and to judge worlds");
+  command->add_option("--world", options->world,
+                      "World file or name in which behaviors are judged: its friction, terrain, "
+                      "actuators and delays");
   auto* name = command->add_option(
       "--stdin-name", options->stdin_name,
       "File name for - in messages; `base:` and `robot:` are searched beside it");
