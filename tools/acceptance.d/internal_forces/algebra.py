@@ -15,7 +15,7 @@ from rows import FOOTFALL, ROOT, SEED, finish, give_up, run, scratch, unit
 SETTLED = 0.03  # s after a contact change
 BAR = 0.1  # N rms
 # Behavior, world, options. The behaviors that stand on slopes for ever are ended.
-CASES = [("wedges_ellipse", "wedges", ["--for", "12 s"]), ("triped_circle", "ideal", []), ("triped_lift", "ideal", []),
+CASES = [("wedges_ellipse", "wedges", ["--for", "12 s", "--set", "world.constraints.planarizer.known=true"]), ("triped_circle", "ideal", []), ("triped_lift", "ideal", []),
          ("quadruped_circle", "ideal", []), ("quadruped_lift", "ideal", [])]
 TESTS = [("tasks/tasks_test", "Quadruped.ForcesBetweenAllMoveNothing"),
          ("tasks/tasks_test", "Quadruped.TheWarpLoadsOneDiagonalAndUnloadsTheOther"),
@@ -25,10 +25,11 @@ TESTS = [("tasks/tasks_test", "Quadruped.ForcesBetweenAllMoveNothing"),
 def rows_of(behavior, world, options):
     with scratch() as folder:
         done = run(behavior, "--world", world, "--seed", SEED, "--log", folder, "--log-all", *options, log=True)
-        if done["end"] not in ("finished", "duration"):
+        if done["end"] not in ("finished", "time"):
             give_up(f"{behavior} in {world}: {done['end']}")
-        text = subprocess.run([FOOTFALL, "export", folder, "--csv", "--all", "--signals", "internal.*", "force.*", "force_cmd.*",
-                               "support.*"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        named = [] if "lift" in behavior else ["internal.*"]  # these hold all of them at 0 N, without a name
+        text = subprocess.run([FOOTFALL, "export", folder, "--csv", "--all", "--signals", *named, "force.*", "force_cmd.*",
+                               "support.*", "contact.*"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     return csv.DictReader(io.StringIO(text))
 
 
@@ -36,19 +37,21 @@ def errors(behavior, world, options):
     """Largest rms over the contacts' axes of predicted minus MuJoCo's force, and over the internal forces of measured minus
     reference; N."""
     contact, internal = {}, {}
-    support, changed = None, 0.0
+    support, changed, before = None, 0.0, None
     for row in rows_of(behavior, world, options):
         time = float(row["time"])
         feet = {key[8:]: value for key, value in row.items() if key.startswith("support.")}
-        if feet != support:
+        changing = any(float(row[f"contact.{foot}"]) != float(holds) for foot, holds in feet.items())  # or in a transition
+        if feet != support or changing:
             support, changed = feet, time
-        if time - changed < SETTLED:
+        commanded, before = before, row  # what is measured in a tick is under the torque of the tick before
+        if time - changed < SETTLED or commanded is None:
             continue
         for foot, holds in feet.items():
             if float(holds) != 1.0:
                 continue
             for axis in "xyz":
-                error = float(row[f"force_cmd.{foot}.{axis}"]) - float(row[f"force.{foot}.{axis}"])
+                error = float(commanded[f"force_cmd.{foot}.{axis}"]) - float(row[f"force.{foot}.{axis}"])
                 contact.setdefault((foot, axis), []).append(error)
         for key, value in row.items():
             if key.startswith("internal.") and key.endswith(".reference") and value not in ("", "nan"):
@@ -65,7 +68,8 @@ def main():
         texts.append(f"{test} {'holds' if good else 'FAILS'}")
     for behavior, world, options in CASES:
         contact, internal = errors(behavior, world, options)
-        texts.append(f"{behavior} in {world}: MuJoCo's forces {contact:.3f} N rms, internal {internal:.3f}")
+        named = f", internal {internal:.3f}" if math.isfinite(internal) else ""
+        texts.append(f"{behavior} in {world}: MuJoCo's forces {contact:.3f} N rms{named}")
         passed = passed and contact <= BAR and (internal <= BAR or "lift" in behavior)
     finish("; ".join(texts), passed)
 

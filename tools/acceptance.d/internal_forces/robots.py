@@ -11,7 +11,7 @@ import subprocess
 
 from rows import FOOTFALL, ROOT, SEED, finish, give_up, run, scratch
 
-ROBOTS = {"triped": (8.0, 3), "quadruped": (10.0, 6)}  # N, amplitude of the sines; how many
+ROBOTS = {"triped": (8.0, 3), "quadruped": (6.0, 6)}  # N, amplitude of the sines; how many
 CASES = {"ideal": ("", range(SEED, SEED + 1), 0.01, 0.5e-3), "lab": ("_lab", range(SEED, SEED + 10), 0.15, 0.01)}
 BEGIN, END = 1.0, 11.0  # s: of the state `circle`
 
