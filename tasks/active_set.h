@@ -32,7 +32,7 @@ struct InternalCommand {
   double statics = 0.0;           // not 0: the reference is this part of that of statics.h
   double feedback = 0.0;          // K_F on the measured force
   double integral = 0.0;          // K_I, 1/s, of the same error
-  double integral_limit = 0.0;    // N, of what the integral adds; 0: none
+  double integral_limit = -1.0;   // N, of what the integral adds; negative: none
   double bandwidth = 0.0;         // Hz, of the measured force's low-pass; 0: none
   double ramp = 0.0;              // s, in which the reference grows from 0 N
   double scale = 1.0;             // mean force over what the behavior writes: 0.5 for `sum`

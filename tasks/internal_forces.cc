@@ -19,9 +19,9 @@ int place_in(const ControlSet& set, int contact) noexcept {
   return -1;
 }
 
-// The contacts as a set, as one number.
-std::uint32_t key_of(std::array<int, 4> contacts, int count) noexcept {
-  std::sort(contacts.begin(), contacts.begin() + count);
+// The contacts as one number; of a pair, and `as_set`, whatever their order.
+std::uint32_t key_of(std::array<int, 4> contacts, int count, bool as_set = false) noexcept {
+  if (count == 2 || as_set) std::sort(contacts.begin(), contacts.begin() + count);
   std::uint32_t key = 0;
   for (int i = 0; i < count; ++i) {
     key = (key << 8) | static_cast<std::uint32_t>(contacts[at(i)] + 1);
@@ -30,10 +30,10 @@ std::uint32_t key_of(std::array<int, 4> contacts, int count) noexcept {
 }
 
 bool named(const ControlSet& set, const std::array<int, 4>& contacts, int count) noexcept {
-  const std::uint32_t key = key_of(contacts, count);
+  const std::uint32_t key = key_of(contacts, count, true);
   for (int i = 0; i < set.internal_count; ++i) {
     const InternalCommand& c = set.internals[at(i)];
-    if (key_of(c.contacts, c.contact_count) == key) return true;
+    if (key_of(c.contacts, c.contact_count, true) == key) return true;
   }
   return false;
 }
@@ -98,7 +98,7 @@ const InternalForces::Memory* InternalForces::find(std::uint32_t key,
   return nullptr;
 }
 
-// The low-pass of a force that was not in force in the last tick begins at its reference: feedback
+// The low-pass of a force that was not in force in the last tick begins without error: feedback
 // comes in with the low-pass's own time, whatever the torques before were.
 void InternalForces::name_row(WboscProblem& problem, int row, const InternalCommand& c,
                               double reference, std::int64_t tick, bool alone) const noexcept {
@@ -113,11 +113,12 @@ void InternalForces::name_row(WboscProblem& problem, int row, const InternalComm
   constexpr double kTurn = 2.0 * std::numbers::pi;
   problem.F_int[r] = reference;
   problem.K_F[r] = c.feedback;
-  problem.measured_part[r] = alone ? share : 0.0;
-  problem.measured_share[r] = c.bandwidth > 0.0 ? -std::expm1(-kTurn * c.bandwidth * period_) : 1.0;
-  problem.measured_before[r] = last ? last->filtered : reference;
+  problem.error_part[r] = alone ? share : 0.0;
+  problem.error_share[r] = c.bandwidth > 0.0 ? -std::expm1(-kTurn * c.bandwidth * period_) : 1.0;
+  problem.F_before[r] = last ? last->reference : reference;
+  problem.error_before[r] = last ? last->error : 0.0;
   problem.integral_gain[r] = alone ? c.integral * period_ : 0.0;
-  problem.integral_before[r] = last && c.integral > 0.0 ? last->integral : 0.0;
+  problem.integral_before[r] = last ? last->integral : 0.0;
   problem.integral_limit[r] = c.integral_limit;
 }
 
@@ -181,7 +182,8 @@ void InternalForces::keep(const Wbosc& solver, const ControlSet& set, std::int64
       if (place->key != key && m.tick < place->tick) place = &m;
     }
     const WboscSolution& out = solver.solution();
-    *place = {key, tick, began, out.internal_filtered[at(row)], out.internal_integral[at(row)]};
+    const double error = out.internal_error[at(row)], integral = out.internal_integral[at(row)];
+    *place = {key, tick, began, solver.reference(row), error, integral};
     ++row;
   }
 }

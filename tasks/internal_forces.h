@@ -34,12 +34,13 @@ class InternalForces {
   void take_over(const InternalForces& old) noexcept { memory_ = old.memory_; }
 
  private:
-  // A force by its contacts, the smaller first: one pair has one measured force, whatever its name.
+  // A force by its contacts: one pair has one, whatever its name and order. The sign of a warp
+  // depends on the order.
   struct Memory {
     std::uint32_t key = 0;  // 0: unused
     std::int64_t tick = -2;
-    std::int64_t began = -1;                // to act alone; -1: not yet
-    double filtered = 0.0, integral = 0.0;  // N, mean convention
+    std::int64_t began = -1;                              // to act alone; -1: not yet
+    double reference = 0.0, error = 0.0, integral = 0.0;  // N, mean convention
   };
   const Memory* find(std::uint32_t key, std::int64_t tick) const noexcept;
   void name_row(WboscProblem& problem, int row, const InternalCommand& command, double reference,

@@ -51,7 +51,7 @@ class ControlMerge {
     double ramp = 0.0;                   // ellipse: s
     std::int64_t last_tick = 0;          // ellipse: of the angle
   };
-  // An internal force's reference, N as the behavior writes it.
+  // An internal force's reference, N at each contact.
   struct ForceState {
     int source = -1;  // ReferenceSpec::source
     std::uint32_t owner_serial = 0;
@@ -60,6 +60,7 @@ class ControlMerge {
     double entry = 0.0;  // at the start of the reference
     double value = 0.0;  // in force; by statics: of the last tick that was not
     bool by_statics = false;
+    double scale = 1.0;  // mean force over what the behavior writes, of the last tick
   };
   // One set of active tasks, with the same numbering as its tasks::ControlSet.
   struct Bank {

@@ -56,9 +56,10 @@ void ControlMerge::fill_forces(Bank& bank, tasks::ControlSet& set,
     if (state.by_statics) {  // the controller's, of the last tick
       const double last =
           statechart_.context().signals[behavior_.layout.internal[at(force.instance)].reference];
-      if (std::isfinite(last)) state.value = last;
+      if (std::isfinite(last)) state.value = state.scale * last;
     }
     state.by_statics = force.statics >= 0;
+    state.scale = force.scale;
     if (!goes_on) start_force(bank, state, force);
   }
 }
@@ -67,10 +68,12 @@ void ControlMerge::start_force(Bank& bank, ForceState& state, const InternalSpec
   state.entry = state.value;
   if (spec.reference.kind != ReferenceSpec::Kind::trajectory) return;
   state.start_tick = statechart_.context().tick;
-  const double over = value_or(spec.reference.over, 0.0, bank, &state.entry);
-  const double to = value_or(spec.value, state.entry, bank, &state.entry);
-  const double end = value_or(spec.end_velocity, 0.0, bank, &state.entry);
-  state.segment = make_segment(spec.reference.shape, {state.entry, 0.0, 0.0}, to, end, over);
+  const double entry = state.entry / spec.scale;
+  const double over = value_or(spec.reference.over, 0.0, bank, &entry);
+  const double to = value_or(spec.value, entry, bank, &entry);
+  const double end = value_or(spec.end_velocity, 0.0, bank, &entry);
+  state.segment = make_segment(spec.reference.shape, {state.entry, 0.0, 0.0}, spec.scale * to,
+                               spec.scale * end, over);
 }
 
 void ControlMerge::advance_forces(Bank& bank, tasks::ControlSet& set) noexcept {
@@ -79,8 +82,9 @@ void ControlMerge::advance_forces(Bank& bank, tasks::ControlSet& set) noexcept {
     const InternalSpec& spec = behavior_.internals[at(bank.spec->internals.first + k)];
     tasks::InternalCommand& command = set.internals[at(k)];
     ForceState& state = bank.forces[at(k)];
+    const double entry = state.entry / spec.scale;
     const auto value = [&](int expression, double before) {
-      return value_or(expression, before, bank, &state.entry);
+      return value_or(expression, before, bank, &entry);
     };
     if (spec.reference.kind == ReferenceSpec::Kind::trajectory) {
       const auto ticks = static_cast<double>(context.tick - state.start_tick);
@@ -88,13 +92,15 @@ void ControlMerge::advance_forces(Bank& bank, tasks::ControlSet& set) noexcept {
     } else if (spec.statics >= 0) {
       command.statics = value(spec.statics, command.statics);
     } else if (!bank.frozen) {
-      state.value = value(spec.value, state.value);
+      state.value = spec.scale * value(spec.value, state.value / spec.scale);
     }
-    command.reference = spec.scale * state.value;
+    command.reference = state.value;
     command.feedback = value(spec.feedback, command.feedback);
     command.integral = value(spec.integral, command.integral);
-    command.integral_limit =
-        spec.scale * value(spec.integral_limit, command.integral_limit / spec.scale);
+    if (spec.integral_limit >= 0) {
+      command.integral_limit =
+          spec.scale * value(spec.integral_limit, command.integral_limit / spec.scale);
+    }
     command.bandwidth = value(spec.bandwidth, command.bandwidth);
     command.ramp = value(spec.ramp, command.ramp);
   }

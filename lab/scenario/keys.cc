@@ -58,7 +58,7 @@ constexpr WordSpec kScenarioEndRows[] = {
 constexpr KeySpec kScriptRows[] = {
     key("at", quantity(kTime), map_of(kMomentKeys), "a time in the run, or a phase of it"),
     key("on", name_of("an event or prefix"), "each time that this event is raised"),
-    key("push", map_of(kPushKeys), "a horizontal force on a body"),
+    key("push", map_of(kPushKeys), "a force on a body"),
     key("edit", by_name(one_or_list(any_quantity())),
         "a live edit: parameters and gains by name (`goal.x` for one value), applied whole or not "
         "at all"),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "core/diagnostics/did_you_mean.h"
@@ -155,6 +156,11 @@ ScriptedPush read_push(ScenarioContext& context, const YamlNode& node) {
   }
   if (const YamlNode* point = node.find("point")) {
     push.point = core::read_vector3(*point, core::kLength, context.diagnostics);
+    constexpr double kFar = 10.0;  // m
+    if (push.point &&
+        std::ranges::any_of(*push.point, [](double x) { return std::abs(x) > kFar; })) {
+      context.error(point->mark, "out-of-range", "expected a point of the body, within 10 m");
+    }
   }
   return push;
 }

@@ -84,23 +84,27 @@ void Wbosc::add_internal_forces() noexcept {
   if (nulls > 0) add_null_torque(nulls, rows);
 }
 
-// What is measured of a row, and what feedback adds to its command.
+// What is measured of a row, and what feedback adds to its command. A measurement that is not a
+// number leaves the error as it was.
 void Wbosc::feed_back(int row, double measured) noexcept {
   const std::size_t i = extent(row);
-  const double before = problem_.measured_before[i];
-  const double part = problem_.measured_part[i];
-  const double fed_back = (1.0 - part) * problem_.F_int[i] + part * measured;
-  const double filtered = before + problem_.measured_share[i] * (fed_back - before);
-  const double error = problem_.F_int[i] - filtered;
-  solution_.internal_measured[i] = measured;
-  solution_.internal_filtered[i] = filtered;
-  solution_.internal_integral[i] = problem_.integral_before[i];
-  if (!problem_.tau_measured) return;
+  const double before = problem_.error_before[i];
   const double old = problem_.integral_before[i];
-  double integral = old + problem_.integral_gain[i] * error;
+  solution_.internal_measured[i] = measured;
+  solution_.internal_error[i] = before;
+  solution_.internal_integral[i] = old;
+  if (!problem_.tau_measured) return;
+  double error = before;
+  if (std::isfinite(measured)) {
+    const double now = problem_.error_part[i] * (problem_.F_before[i] - measured);
+    error += problem_.error_share[i] * (now - before);
+  }
+  const double gain = problem_.integral_gain[i];
+  double integral = gain > 0.0 ? old + gain * error : old * (1.0 - problem_.error_share[i]);
   if (problem_.hold_integral && std::abs(integral) > std::abs(old)) integral = old;
   const double limit = problem_.integral_limit[i];
-  if (limit > 0.0) integral = within_limit(integral, limit);
+  if (limit >= 0.0) integral = within_limit(integral, limit);
+  solution_.internal_error[i] = error;
   solution_.internal_integral[i] = integral;
   rhs_[i] += problem_.K_F[i] * error + integral;
 }

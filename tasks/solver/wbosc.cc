@@ -37,13 +37,14 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   problem_.external.assign(extent(n), 0.0);
   problem_.W_int.assign(extent(sizes.internal_rows * sizes.contact_rows), 0.0);
   for (std::vector<double>* rows :
-       {&problem_.F_int, &problem_.K_F, &problem_.measured_before, &problem_.integral_gain,
-        &problem_.integral_before, &problem_.integral_limit, &solution_.internal,
-        &solution_.internal_measured, &solution_.internal_filtered, &solution_.internal_integral}) {
+       {&problem_.F_int, &problem_.K_F, &problem_.F_before, &problem_.error_before,
+        &problem_.integral_gain, &problem_.integral_before, &solution_.internal,
+        &solution_.internal_measured, &solution_.internal_error, &solution_.internal_integral}) {
     rows->assign(extent(sizes.internal_rows), 0.0);
   }
-  problem_.measured_share.assign(extent(sizes.internal_rows), 1.0);
-  problem_.measured_part.assign(extent(sizes.internal_rows), 1.0);
+  problem_.error_share.assign(extent(sizes.internal_rows), 1.0);
+  problem_.error_part.assign(extent(sizes.internal_rows), 1.0);
+  problem_.integral_limit.assign(extent(sizes.internal_rows), -1.0);
   solution_.asked.assign(extent(sizes.na), 0.0);
   solution_.tau.assign(extent(sizes.na), 0.0);
   solution_.f.assign(extent(sizes.contact_rows), 0.0);
@@ -63,12 +64,11 @@ Wbosc::Wbosc(const WboscSizes& sizes, const WboscOptions& options)
   free_bias_.assign(extent(sizes.task_rows), 0.0);
   reflectors_.assign(extent(n * n), 0.0);
   reflector_beta_.assign(extent(n), 0.0);
-  null_reflectors_.assign(extent(sizes.na * sizes.na), 0.0);
+  for (auto* square : {&null_reflectors_, &V_, &T_, &N_}) {
+    square->assign(extent(sizes.na * sizes.na), 0.0);
+  }
   null_beta_.assign(extent(sizes.na), 0.0);
-  V_.assign(extent(sizes.na * sizes.na), 0.0);
   V_beta_.assign(extent(sizes.na), 0.0);
-  T_.assign(extent(sizes.na * sizes.na), 0.0);
-  N_.assign(extent(sizes.na * sizes.na), 0.0);
   Vc_.assign(extent(sizes.contact_rows * n), 0.0);
   Vc_beta_.assign(extent(n), 0.0);
   Tc_.assign(extent(sizes.contact_rows * n), 0.0);

@@ -66,11 +66,12 @@ struct WboscProblem {
   std::vector<double> W_int;     // internal_rows x contact_rows, acts on f (ground on robot)
   std::vector<double> F_int;     // wanted W_int f
   std::vector<double> K_F;       // feedback on W_int f(tau_measured), 0: none
-  // What is fed back is this part of the error, F_int + part (W_int f(tau_measured) - F_int), after
-  // a low-pass: before + share (... - before); share 1: none.
-  std::vector<double> measured_part, measured_share, measured_before;
-  // Integral of that error: before + gain (F_int - filtered), within limit (0: none). It does not
-  // grow while a torque limit acts (hold_integral).
+  // What is fed back is this part of the error, F_int of the tick before - W_int f(tau_measured),
+  // whose torque was asked for then, after a low-pass: before + share (... - before); share 1:
+  // none.
+  std::vector<double> F_before, error_part, error_share, error_before;
+  // Integral of that error: before + gain error, within limit (negative: none). It does not grow
+  // while a torque limit acts (hold_integral); without a gain it fades with the low-pass.
   std::vector<double> integral_gain, integral_before, integral_limit;
   bool hold_integral = false;
   const double* tau_measured = nullptr;  // na; nullptr: no feedback
@@ -88,7 +89,7 @@ struct WboscSolution {
   std::vector<double> achieved;  // task_rows: J q̈ + J̇ q̇ under tau
   std::vector<double> internal;  // internal_rows: W_int f under tau
   std::vector<double> internal_measured;  // internal_rows: W_int f under tau_measured
-  std::vector<double> internal_filtered;  // internal_rows: the same after its low-pass
+  std::vector<double> internal_error;     // internal_rows: what is fed back, N
   std::vector<double> internal_integral;  // internal_rows: N
   std::vector<double> f_measured;  // contact_rows: ground on robot under tau_measured, else f
   int internal_rank = 0;           // of the rows of internal forces
@@ -110,6 +111,8 @@ class Wbosc {
 
   WboscProblem& problem() noexcept { return problem_; }
   const WboscSolution& solution() const noexcept { return solution_; }
+  // Of an internal force, as solved: N.
+  double reference(int row) const noexcept { return problem_.F_int[static_cast<std::size_t>(row)]; }
 
   // Solves problem(). Allocates nothing; cost depends on the sizes only.
   void solve() noexcept;

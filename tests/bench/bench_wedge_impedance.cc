@@ -94,7 +94,8 @@ nlohmann::ordered_json measure(int axis, bool known) {
   push_all(*rig.backend, axis == 0 ? 0.0 : -0.5 * M_PI);
   const double begin = loop.time();
   while (loop.time() < begin + kHeld) loop.tick();
-  const double moved = std::abs(settled_place(loop, axis) - before);
+  const double along = axis == 0 ? 1.0 : -1.0;  // the push
+  const double moved = along * (settled_place(loop, axis) - before);
   return {{"axis", axis == 0 ? "x" : "z"},
           {"known", known},
           {"expected", expected},

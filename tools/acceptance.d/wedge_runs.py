@@ -10,7 +10,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from rows import FOOTFALL, PROCESSES, ROOT, WANT, finish, run, scratch  # noqa: F401 (for the rows)
+from rows import FOOTFALL, PROCESSES, ROOT, WANT, finish, give_up, run, scratch  # noqa: F401 (for the rows)
 
 WORLDS = ROOT / "sim" / "worlds"
 

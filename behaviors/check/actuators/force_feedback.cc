@@ -62,7 +62,16 @@ class FeedbackCheck {
     for (const int expression : {spec.feedback, spec.integral, spec.bandwidth}) {
       if (expression < 0) continue;
       const Dependence needs = dependence_of(b(), expression);
-      if (!needs.fixed()) return;
+      if (!needs.fixed()) {
+        context_.findings.add(
+            Severity::error, spec.mark, "unjudged-feedback", {},
+            fmt::format(
+                "feedback, integral or bandwidth of internal force '{}' changes with time or "
+                "measurements: whether it is stable cannot be told; give each state its "
+                "own value, or a parameter",
+                b().internal_instances[at(spec.instance)]));
+        return;
+      }
       parameters.insert(parameters.end(), needs.parameters.begin(), needs.parameters.end());
     }
     if (report(index, values_, true, {})) return;

@@ -42,12 +42,14 @@ class ForceCheck {
       if (overload(none)) {  // the robot cannot stand in this posture by itself
         if (&posture == context_.postures.data() && !context_.world.terrain.boxes.empty()) {
           ++judged;
-          judge_hold(all);
+          if (known_) judge_hold(all);
         }
         continue;
       }
       ++judged;
-      for (int k = 0; k < control_.internals.count; ++k) judge(k, all);
+      for (int k = 0; k < control_.internals.count; ++k) {
+        if (holds(k)) judge(k, all);
+      }
     }
     context_.findings.settle(judged);
   }
@@ -57,18 +59,29 @@ class ForceCheck {
     return context_.behavior.internals[static_cast<std::size_t>(control_.internals.first + k)];
   }
 
-  // Internal forces that do not depend on measurements, in N at each contact; others count as 0.
-  // NaN: by statics.
-  std::vector<double> references() const {
+  // Whether all of a force's feet are in contact here; a state may inherit others.
+  bool holds(int k) const {
+    const auto& contacts = control_.contacts;
+    return std::all_of(spec(k).contacts.begin(), spec(k).contacts.begin() + spec(k).contact_count,
+                       [&](int c) { return std::ranges::find(contacts, c) != contacts.end(); });
+  }
+
+  // Internal forces in N at each contact, NaN: by statics. Those that change with time or
+  // measurements, or pass through 0 N as they begin, are not known (known_) and count as 0.
+  std::vector<double> references() {
     std::vector<double> values;
     for (int k = 0; k < control_.internals.count; ++k) {
-      if (spec(k).statics >= 0) {
+      const InternalSpec& force = spec(k);
+      const bool at_once = force.reference.kind != ReferenceSpec::Kind::trajectory &&
+                           values_.of(force.ramp).value_or(0.0) <= 0.0;
+      if (force.statics >= 0 && at_once) {
         values.push_back(std::numeric_limits<double>::quiet_NaN());
         continue;
       }
-      const Dependence needs = dependence_of(context_.behavior, spec(k).value);
-      values.push_back(needs.fixed() ? spec(k).scale * values_.of(spec(k).value).value_or(0.0)
-                                     : 0.0);
+      const Dependence needs = dependence_of(context_.behavior, force.value);
+      const bool fixed = force.statics < 0 && needs.fixed();
+      values.push_back(fixed ? force.scale * values_.of(force.value).value_or(0.0) : 0.0);
+      known_ = known_ && fixed && at_once;
     }
     return values;
   }
@@ -103,13 +116,18 @@ class ForceCheck {
   // tensions of four feet on a plane. `between: all` asks for no more than there is.
   void judge_rank(const std::vector<double>& all) {
     std::set<int> names;
-    for (int k = 0; k < control_.internals.count; ++k) names.insert(spec(k).instance);
-    const int count = static_cast<int>(names.size());
-    if (count < control_.internals.count || context_.postures.empty()) return;
+    int count = 0, last = 0;
+    for (int k = 0; k < control_.internals.count; ++k) {
+      if (!holds(k)) continue;
+      names.insert(spec(k).instance);
+      ++count;
+      last = k;
+    }
+    if (static_cast<int>(names.size()) < count || context_.postures.empty()) return;
     context_.model.update(context_.postures.front());
     const int rank = context_.law.rest(control_, all).internal_rank;
     if (rank >= count) return;
-    const core::Mark mark = spec(count - 1).mark;
+    const core::Mark mark = spec(last).mark;
     context_.findings.add(
         Severity::error, mark, "dependent-forces", {},
         fmt::format(
@@ -124,10 +142,11 @@ class ForceCheck {
   void judge_hold(const std::vector<double>& all) {
     const auto found = overload(all);
     if (!found) return;
-    report(0, *found, Severity::error,
-           fmt::format("with internal force '{}' of {:g} N at each foot the robot cannot stand "
-                       "where the world starts it",
-                       name(0), in_force_[0]),
+    const std::string with =
+        control_.internals.count == 0
+            ? "without an internal force"
+            : fmt::format("with internal force '{}' of {:g} N at each foot", name(0), in_force_[0]);
+    report(0, *found, Severity::error, with + " the robot cannot stand where the world starts it",
            {});
   }
 
@@ -167,6 +186,13 @@ class ForceCheck {
     }
   }
 
+  // Of a law without internal forces: its first task.
+  core::Mark first_mark() const {
+    const Range& tasks = control_.tasks;
+    return tasks.count > 0 ? context_.behavior.tasks[static_cast<std::size_t>(tasks.first)].mark
+                           : core::Mark{};
+  }
+
   const std::string& name(int k) const {
     return context_.behavior.internal_instances[static_cast<std::size_t>(spec(k).instance)];
   }
@@ -189,20 +215,24 @@ class ForceCheck {
                   contact.name, found.tangential, friction(contact), found.normal,
                   friction(contact) * found.normal,
                   friction(contact) < contact.friction ? " (friction of the world)" : "");
-    context_.findings.add(severity, spec(k).mark, "friction-cone", subject,
+    const core::Mark mark = control_.internals.count > 0 ? spec(k).mark : first_mark();
+    context_.findings.add(severity, mark, "friction-cone", subject,
                           fmt::format("{}, {}", what, slips));
   }
 
   PhysicsContext& context_;
   const ControlSpec& control_;
   StaticValues values_;
+  bool known_ = true;             // all internal forces at the start
   std::vector<double> in_force_;  // N at each contact, of the law judged last
 };
 
 }  // namespace
 
 void check_internal_forces(PhysicsContext& context, const ControlSpec& control) {
-  if (control.internals.count > 0) ForceCheck(context, control).run();
+  if (control.internals.count > 0 || !context.world.terrain.boxes.empty()) {
+    ForceCheck(context, control).run();
+  }
 }
 
 }  // namespace footfall::behaviors

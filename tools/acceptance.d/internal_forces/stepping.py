@@ -43,7 +43,7 @@ def phase_errors(behavior, seed, folder, *options):
             current = []
         else:
             current.append(float(measured) - float(reference))
-    return [phase for phase in phases[2:] if phase]  # after the first stand
+    return [phase for phase in phases + [current] if phase][1:]  # after the first stand
 
 
 def errors(behavior, seeds, folder, feedback):
