@@ -77,7 +77,8 @@ constexpr KeySpec kConstraintRows[] = {
     key("yaw", map_of(kTurnSpringKeys), "likewise about z"),
     key("rope", map_of(kRopeKeys), "a rope between a point of the body and a fixed place"),
     key("known", boolean(),
-        "whether the controller takes its axes, springs both ways, as constraints of its model")
+        "whether the controller takes its axes, springs both ways, as constraints of its model; "
+        "tasks have to leave alone what these forbid, which `check` does not judge")
         .otherwise("false"),
     key("slides", by_axis(quantity(kMass, "a mass")),
         "mass that is moved along x, y, z of the world with the origin of the robot's floating "

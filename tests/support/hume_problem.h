@@ -74,6 +74,7 @@ class ProblemBuilder {
       w[3 * static_cast<std::size_t>(b) + k] = 0.5 * (pa[k] - pb[k]) / length;
     }
     p_.F_int[static_cast<std::size_t>(p_.internal_rows)] = wanted;
+    p_.F_before[static_cast<std::size_t>(p_.internal_rows)] = wanted;
     p_.K_F[static_cast<std::size_t>(p_.internal_rows)] = 0.0;
     p_.named_internal_rows = ++p_.internal_rows;
   }

@@ -142,6 +142,49 @@ TEST_F(Controller, MeasuredTensionIsFedBackThroughALowPass) {
   EXPECT_NEAR(last - kWanted, d / (1.0 + kGain), 1e-6);
 }
 
+// A step of the reference is no error: the torque measured is that of the reference before. With ideal
+// torques, a tick old, the force goes to the new reference at once and stays there.
+TEST_F(Controller, AStepOfTheReferenceIsNotFedBack) {
+  ActiveControl control;
+  control.primary = dual_;
+  control.primary.internal_count = 1;
+  tasks::InternalCommand& force = control.primary.internals[0];
+  force = {.contacts = {kRightFoot, kLeftFoot}, .reference = 50.0, .feedback = 5.0, .bandwidth = 20.0};
+  std::array<double, 6> measured{};
+  const auto run = [&](int ticks) {
+    double farthest = 0.0;
+    for (int n = 0; n < ticks; ++n) {
+      controller_.compute(control, tick_++, measured.data(), tau_.data());
+      std::copy_n(tau_.begin(), 6, measured.begin());
+      farthest = std::max(farthest, std::abs(controller_.result().internal[0] - force.reference));
+    }
+    return farthest;
+  };
+  run(300);
+  force.reference = 30.0;
+  EXPECT_LE(run(300), 1e-3);
+}
+
+TEST_F(Controller, APairInTheOtherOrderIsTheSameForce) {
+  ActiveControl control;
+  control.primary = dual_;
+  control.primary.internal_count = 1;
+  tasks::InternalCommand& force = control.primary.internals[0];
+  force = {.contacts = {kRightFoot, kLeftFoot}, .reference = 40.0, .integral = 30.0, .bandwidth = 20.0};
+  const std::array<double, 6> error = {5.0, -10.0, 15.0, -5.0, 10.0, 20.0};
+  std::array<double, 6> measured{};
+  const auto tick = [&] {
+    controller_.compute(control, tick_++, measured.data(), tau_.data());
+    for (std::size_t j = 0; j < 6; ++j) measured[j] = tau_[j] + error[j];
+    return controller_.primary().solution().internal_integral[0];
+  };
+  for (int n = 0; n < 200; ++n) tick();
+  const double before = tick();
+  ASSERT_GT(std::abs(before), 0.5);
+  force.contacts = {kLeftFoot, kRightFoot};
+  EXPECT_NEAR(tick(), before, 0.05 * std::abs(before));
+}
+
 // The integral takes the error to nothing. Stepped by hand: the same loop with I beside K.
 TEST_F(Controller, AnIntegralLeavesNoErrorOfTheTension) {
   constexpr double kWanted = 40.0, kGain = 2.0, kIntegral = 30.0;
