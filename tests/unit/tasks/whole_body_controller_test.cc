@@ -142,14 +142,15 @@ TEST_F(Controller, MeasuredTensionIsFedBackThroughALowPass) {
   EXPECT_NEAR(last - kWanted, d / (1.0 + kGain), 1e-6);
 }
 
-// A step of the reference is no error: the torque measured is that of the reference before. With ideal
-// torques, a tick old, the force goes to the new reference at once and stays there.
+// A step of the reference is no error: the torque measured is that of the reference before. With
+// ideal torques, a tick old, the force goes to the new reference at once and stays there.
 TEST_F(Controller, AStepOfTheReferenceIsNotFedBack) {
   ActiveControl control;
   control.primary = dual_;
   control.primary.internal_count = 1;
   tasks::InternalCommand& force = control.primary.internals[0];
-  force = {.contacts = {kRightFoot, kLeftFoot}, .reference = 50.0, .feedback = 5.0, .bandwidth = 20.0};
+  force = {
+      .contacts = {kRightFoot, kLeftFoot}, .reference = 50.0, .feedback = 5.0, .bandwidth = 20.0};
   std::array<double, 6> measured{};
   const auto run = [&](int ticks) {
     double farthest = 0.0;
@@ -170,7 +171,8 @@ TEST_F(Controller, APairInTheOtherOrderIsTheSameForce) {
   control.primary = dual_;
   control.primary.internal_count = 1;
   tasks::InternalCommand& force = control.primary.internals[0];
-  force = {.contacts = {kRightFoot, kLeftFoot}, .reference = 40.0, .integral = 30.0, .bandwidth = 20.0};
+  force = {
+      .contacts = {kRightFoot, kLeftFoot}, .reference = 40.0, .integral = 30.0, .bandwidth = 20.0};
   const std::array<double, 6> error = {5.0, -10.0, 15.0, -5.0, 10.0, 20.0};
   std::array<double, 6> measured{};
   const auto tick = [&] {

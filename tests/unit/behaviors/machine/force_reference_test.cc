@@ -68,6 +68,16 @@ TEST_F(ForceReference, TheSameTrajectoryGoesOnWhereOnlyOtherKeysChange) {
   EXPECT_NEAR(force().reference, 15.0 * (1.0 - std::cos(std::numbers::pi * 0.75)), 0.5);
 }
 
+// The force stays what it is where the convention changes: 100 N of both feet are 50 N at each.
+TEST_F(ForceReference, AnotherConventionIsNoOtherForce) {
+  begin("100 N, convention: sum", "{trajectory: cosine, to: 50 N, over: 100 ms}");
+  EXPECT_DOUBLE_EQ(force().reference, 50.0);
+  run_->run_to(301);
+  EXPECT_NEAR(force().reference, 50.0, 1e-12);
+  run_->run_to(400);
+  EXPECT_NEAR(force().reference, 50.0, 1e-12);
+}
+
 TEST_F(ForceReference, StaticsIsAPartOfWhatTheControllerFinds) {
   begin("statics", "{statics: 80 %}");
   EXPECT_EQ(force().statics, 1.0);
