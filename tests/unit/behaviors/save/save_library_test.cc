@@ -1,5 +1,5 @@
-// Every file of the library and of the examples, all live values changed at random; and files in
-// every layout, whole and broken.
+// Files of the library and of the examples (a fourth of them, in the full set all), all live values
+// changed at random; and files in every layout, whole and broken.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -103,7 +103,10 @@ class SaveLibrary : public SaveTest {
       }
     }
     std::ranges::sort(names);
-    return names;
+    if (std::getenv("FOOTFALL_SAVE_ROUNDS") != nullptr) return names;
+    std::vector<std::string> some;  // all of them: the full set
+    for (std::size_t k = 0; k < names.size(); k += 4) some.push_back(names[k]);
+    return some;
   }
 };
 
@@ -135,7 +138,7 @@ TEST_F(SaveLibrary, AllLiveValuesOfEveryFileReadBackBitForBitAndNothingElseChang
       changed += static_cast<int>(values.size());
     }
   }
-  EXPECT_GT(changed, 100);
+  EXPECT_GT(changed, 50);
 }
 
 TEST_F(SaveLibrary, AllLiveValuesOfEveryFileFindPlaceInAnOverlay) {
