@@ -11,14 +11,6 @@
 namespace footfall::tasks {
 namespace {
 
-// Index of a robot contact within the set, -1 if it does not hold.
-int place_in(const ControlSet& set, int contact) noexcept {
-  for (int i = 0; i < set.contact_count; ++i) {
-    if (set.contacts[at(i)] == contact) return i;
-  }
-  return -1;
-}
-
 // The contacts as one number; of a pair, and `as_set`, whatever their order.
 std::uint32_t key_of(std::array<int, 4> contacts, int count, bool as_set = false) noexcept {
   if (count == 2 || as_set) std::sort(contacts.begin(), contacts.begin() + count);
@@ -77,6 +69,13 @@ void warp_row(const model::ControlModel& model, const ControlSet& set,
 }
 
 }  // namespace
+
+int place_in(const ControlSet& set, int contact) noexcept {
+  for (int i = 0; i < set.contact_count; ++i) {
+    if (set.contacts[at(i)] == contact) return i;
+  }
+  return -1;
+}
 
 int internal_rows(int contacts) noexcept {
   const int pairs = contacts * (contacts - 1) / 2;

@@ -52,6 +52,8 @@ class InternalForces {
   std::array<Memory, 2 * core::kMaxInternal> memory_{};
 };
 
+// Index of a robot contact within the set, -1 if it does not hold.
+int place_in(const ControlSet& set, int contact) noexcept;
 // Whether all of its contacts are in the set.
 bool holds(const ControlSet& set, const InternalCommand& command) noexcept;
 

@@ -14,14 +14,6 @@ WboscSizes solver_sizes(const model::ControlModel& model, const ControllerSizes&
           sizes.task_rows, sizes.levels,        internal_rows(sizes.contacts)};
 }
 
-// Index of a robot contact within the set, -1 if it does not hold.
-int place_in(const ControlSet& set, int contact) noexcept {
-  for (int i = 0; i < set.contact_count; ++i) {
-    if (set.contacts[at(i)] == contact) return i;
-  }
-  return -1;
-}
-
 }  // namespace
 
 WholeBodyController::WholeBodyController(const model::ControlModel& model,

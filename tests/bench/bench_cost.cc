@@ -44,13 +44,6 @@ stacks:
       height: {type: com_position, axes: [z], priority: 1, reference: 0.91 m, gains: {kp: 270, ki: 20, kd: 10}}
       attitude: {type: body_orientation, axes: [pitch, roll], priority: 1, reference: 0, gains: {kp: [200, 210], ki: [20, 35], kd: [15, 10]}}
       swing: {type: point_position, point: left_foot, priority: 1, reference: {trajectory: hold}, gains: {kp: [220, 237, 400], ki: [35, 40, 35], kd: [35, 40, 60]}}
-  tension:
-    contacts: [right_foot, left_foot]
-    tasks:
-      height: {type: com_position, axes: [z], priority: 1, reference: 0.91 m, gains: {kp: 270, ki: 20, kd: 10}}
-      attitude: {type: body_orientation, axes: [yaw, pitch, roll], priority: 1, reference: 0, gains: {kp: [100, 200, 210], ki: [0, 20, 35], kd: [0, 15, 10]}}
-      rest: {type: joint_damping, priority: 2, gains: {kd: 2}}
-    internal: {tension: {between: [right_foot, left_foot], reference: 20 N, feedback: 2, integral: 5 1/s}}
 machine:
   safe: limp
   states:
@@ -109,7 +102,11 @@ struct Stance {
 
   Stance(const std::string& name, const std::vector<hal::Sensors>& frames) {
     std::string text = kStances;
-    text.replace(text.find("STANCE"), 6, name);
+    // `tension` is `dual` with its internal force fed back.
+    const char* const force =
+        "dual, internal: {tension: {between: [right_foot, left_foot], reference: 20 N, feedback: "
+        "2, integral: 5 1/s}}";
+    text.replace(text.find("STANCE"), 6, name == "tension" ? force : name.c_str());
     const auto path = std::filesystem::temp_directory_path() / ("footfall_bench_" + name + ".yaml");
     std::ofstream(path) << text;
     core::Diagnostics diagnostics;
